@@ -1,0 +1,195 @@
+//! The pinhole camera: projection of points and segments, with clipping.
+
+use super::{Point2, Point3, Segment2, Segment3};
+use crate::math;
+use core::fmt;
+
+/// An ideal pinhole camera without distortion, square pixels.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PinholeCamera {
+    width_px: u16,
+    height_px: u16,
+    focal_length_px: f32,
+    principal_point_px: Point2,
+}
+
+impl PinholeCamera {
+    /// The camera of the reference rig: 640 x 480 px, 65 degrees wide, principal point at the centre.
+    #[must_use]
+    pub const fn reference() -> Self {
+        // 502.3 px = 320 px / tan(32.5 degrees).
+        Self { width_px: 640, height_px: 480, focal_length_px: 502.3, principal_point_px: Point2::new(320.0, 240.0) }
+    }
+
+    /// A camera from its image size, focal length and principal point, all in pixels.
+    ///
+    /// # Errors
+    /// When a side is zero or above 2048 px, the focal length not within 1 to 100,000 px, or the principal point
+    /// outside the image.
+    pub fn new(size_px: (u16, u16), focal_length_px: f32, principal_point_px: Point2) -> Result<Self, CameraError> {
+        let (width_px, height_px) = size_px;
+        let side_fits = |side: u16| side > 0 && f32::from(side) <= Segment2::MAX_COORDINATE_PX;
+        if !side_fits(width_px) || !side_fits(height_px) {
+            return Err(CameraError::ImageSize);
+        }
+        if !(1.0..=100_000.0).contains(&focal_length_px) {
+            return Err(CameraError::FocalLength);
+        }
+        let inside = (0.0..=f32::from(width_px)).contains(&principal_point_px.x)
+            && (0.0..=f32::from(height_px)).contains(&principal_point_px.y);
+        if !inside {
+            return Err(CameraError::PrincipalPoint);
+        }
+        Ok(Self { width_px, height_px, focal_length_px, principal_point_px })
+    }
+
+    /// Image width [px].
+    #[must_use]
+    pub const fn width_px(&self) -> u16 {
+        self.width_px
+    }
+
+    /// Image height [px].
+    #[must_use]
+    pub const fn height_px(&self) -> u16 {
+        self.height_px
+    }
+
+    /// Focal length [px].
+    #[must_use]
+    pub const fn focal_length_px(&self) -> f32 {
+        self.focal_length_px
+    }
+
+    /// Where the optical axis meets the image [px].
+    #[must_use]
+    pub const fn principal_point_px(&self) -> Point2 {
+        self.principal_point_px
+    }
+
+    /// Image of a point of the camera frame with `z > 0`; not clipped to the image.
+    #[must_use]
+    pub fn project(&self, point: Point3) -> Point2 {
+        let scale = self.focal_length_px / point.z;
+        Point2::new(self.principal_point_px.x + point.x * scale, self.principal_point_px.y + point.y * scale)
+    }
+
+    /// Image of a segment of the camera frame, cut at `near_limit_m` and at the image border.
+    ///
+    /// `None` when nothing of it is seen. Direction and polarity carry over. `near_limit_m` must be positive.
+    #[must_use]
+    pub fn project_segment(&self, segment: &Segment3, near_limit_m: f32) -> Option<Segment2> {
+        let (start, end) = clip_near(segment.start, segment.end, near_limit_m)?;
+        let (start, end) = self.clip_to_image(self.project(start), self.project(end))?;
+        Segment2::new(start, end, segment.polarity).ok()
+    }
+
+    /// The part of the segment from `start` to `end` inside the image rectangle (Liang and Barsky 1984).
+    #[must_use]
+    pub fn clip_to_image(&self, start: Point2, end: Point2) -> Option<(Point2, Point2)> {
+        let (dx, dy) = (end.x - start.x, end.y - start.y);
+        let (width, height) = (f32::from(self.width_px), f32::from(self.height_px));
+        let borders = [(-dx, start.x), (dx, width - start.x), (-dy, start.y), (dy, height - start.y)];
+        let (mut enter, mut leave) = (0.0_f32, 1.0_f32);
+        for (outward, room) in borders {
+            if outward < 0.0 {
+                enter = enter.max(room / outward);
+            } else if outward > 0.0 {
+                leave = leave.min(room / outward);
+            } else if room < 0.0 {
+                return None;
+            }
+        }
+        if enter >= leave {
+            return None;
+        }
+        let inside = |p: Point2| Point2::new(p.x.clamp(0.0, width), p.y.clamp(0.0, height));
+        Some((inside(start.lerp(end, enter)), inside(start.lerp(end, leave))))
+    }
+
+    /// Horizontal field of view [rad].
+    #[must_use]
+    pub fn horizontal_field_of_view(&self) -> f32 {
+        let left = math::atan2(self.principal_point_px.x, self.focal_length_px);
+        let right = math::atan2(f32::from(self.width_px) - self.principal_point_px.x, self.focal_length_px);
+        left + right
+    }
+}
+
+/// The part of a segment of the camera frame with `z >= near_limit_m`.
+fn clip_near(start: Point3, end: Point3, near_limit_m: f32) -> Option<(Point3, Point3)> {
+    let (start_in, end_in) = (start.z >= near_limit_m, end.z >= near_limit_m);
+    if start_in && end_in {
+        return Some((start, end));
+    }
+    if !start_in && !end_in {
+        return None;
+    }
+    let mut cut = start.lerp(end, (near_limit_m - start.z) / (end.z - start.z));
+    cut.z = near_limit_m;
+    Some(if start_in { (start, cut) } else { (cut, end) })
+}
+
+/// Why numbers do not make a [`PinholeCamera`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CameraError {
+    /// A side of the image is zero or above 2048 px.
+    ImageSize,
+    /// The focal length is not within 1 to 100,000 px.
+    FocalLength,
+    /// The principal point lies outside the image.
+    PrincipalPoint,
+}
+
+impl fmt::Display for CameraError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::ImageSize => "image side is not within 1 to 2048 px",
+            Self::FocalLength => "focal length is not within 1 to 100,000 px",
+            Self::PrincipalPoint => "principal point is outside the image",
+        })
+    }
+}
+
+impl core::error::Error for CameraError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Polarity;
+
+    const CAMERA: PinholeCamera = PinholeCamera::reference();
+
+    fn segment(start: (f32, f32, f32), end: (f32, f32, f32)) -> Segment3 {
+        Segment3 {
+            start: Point3::new(start.0, start.1, start.2),
+            end: Point3::new(end.0, end.1, end.2),
+            polarity: Polarity::LeftBrighter,
+        }
+    }
+
+    #[test]
+    fn the_reference_camera_sees_65_degrees() {
+        assert!((CAMERA.horizontal_field_of_view().to_degrees() - 65.0).abs() < 0.02);
+    }
+
+    #[test]
+    fn a_vertical_edge_ahead_projects_to_the_middle_column() {
+        let seen = CAMERA.project_segment(&segment((0.0, -0.5, 2.0), (0.0, 0.5, 2.0)), 0.15).expect("in view");
+        assert!((seen.start().x - 320.0).abs() < 1e-3 && (seen.length_px() - 251.15).abs() < 0.01);
+    }
+
+    #[test]
+    fn a_segment_through_the_camera_plane_is_cut_at_the_near_limit_and_the_border() {
+        let seen = CAMERA.project_segment(&segment((0.1, 0.2, -1.0), (0.1, 0.2, 3.0)), 0.15).expect("partly in view");
+        for point in [seen.start(), seen.end()] {
+            assert!((0.0..=640.0).contains(&point.x) && (0.0..=480.0).contains(&point.y));
+        }
+    }
+
+    #[test]
+    fn segments_behind_or_beside_the_view_are_not_seen() {
+        assert!(CAMERA.project_segment(&segment((0.0, 0.0, -1.0), (0.0, 1.0, -1.0)), 0.15).is_none());
+        assert!(CAMERA.project_segment(&segment((9.0, -0.5, 1.0), (9.0, 0.5, 1.0)), 0.15).is_none());
+    }
+}

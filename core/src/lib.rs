@@ -1,0 +1,38 @@
+//! Global localisation of a robot from the straight edges it sees.
+//!
+//! The library that ships to the robot: no heap, no `std`, no IO, no clock, no random numbers of its own.
+//! The simulator, the tests, the firmware and the robot all go through the same one verb,
+//! [`localize::Localizer::observe`].
+//!
+//! # The way through the house
+//!
+//! ```text
+//! Scene [Segment2] ---------------------> pgh::build (one histogram per reference line)
+//!                                                          |
+//! compass Heading -> database: nodes still in play,        |
+//! their 3-D segments re-projected at that heading -> pgh   v
+//!                                                 matching::bhattacharyya -> ViewScore
+//!                                                          |
+//!                                 localize::CandidateSet (accumulate per node, B_max - B_th / i)
+//!                                                          v
+//!                        Decision::{Localized, LookAgain { turn }, Unknown { reason }}
+//! ```
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`math`] | the few float functions we use, from one backend on every machine |
+//! | [`geometry`] | angles, headings, segments, scenes, the pinhole camera |
+//! | [`pgh`] | pairwise geometric histograms: shape and fixed-point construction |
+//! | [`matching`] | Bhattacharyya coefficients of histograms, score of a scene against a view |
+//! | [`database`] | the topological database as a written byte format, read in place |
+//! | [`localize`] | candidate filtering and the localiser itself |
+//!
+//! # Same bits everywhere
+//!
+//! Histograms, coefficients, scores and margins are integers; float arithmetic is left to projection, where it
+//! is plain IEEE single precision in source order with `libm` for the functions. A trial therefore gives the
+//! identical decision and scores on x86-64, Cortex-M, aarch64 and wasm32.
+#![no_std]
+
+pub mod geometry;
+pub mod math;

@@ -1,0 +1,52 @@
+//! The float functions of this library, from one backend on every machine.
+//!
+//! `std` calls the platform's C library, whose results differ between machines in the last bit. `libm` is the same
+//! Rust code everywhere, so host and target agree bit for bit. Nothing else in this crate calls a float function.
+
+/// Square root of `x`, correctly rounded.
+#[must_use]
+pub fn sqrt(x: f32) -> f32 {
+    libm::sqrtf(x)
+}
+
+/// Sine and cosine of `radians`.
+#[must_use]
+pub fn sin_cos(radians: f32) -> (f32, f32) {
+    libm::sincosf(radians)
+}
+
+/// Tangent of `radians`.
+#[must_use]
+pub fn tan(radians: f32) -> f32 {
+    libm::tanf(radians)
+}
+
+/// Angle of the vector `(x, y)` in radians, in `[-pi, pi]`.
+#[must_use]
+pub fn atan2(y: f32, x: f32) -> f32 {
+    libm::atan2f(y, x)
+}
+
+/// Nearest integer to `x`, halves away from zero.
+#[must_use]
+pub fn round(x: f32) -> f32 {
+    libm::roundf(x)
+}
+
+/// Largest integer not above `x`.
+#[must_use]
+pub fn floor(x: f32) -> f32 {
+    libm::floorf(x)
+}
+
+/// Magnitude of `x`.
+#[must_use]
+pub fn abs(x: f32) -> f32 {
+    libm::fabsf(x)
+}
+
+/// Length of the vector `(x, y)` by the plain formula: both well inside the range of `f32`.
+#[must_use]
+pub fn length(x: f32, y: f32) -> f32 {
+    sqrt(x * x + y * y)
+}

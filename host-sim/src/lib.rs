@@ -1,0 +1,19 @@
+//! The workstation side of edgeloc: wire-frame worlds, a stereo rig with its uncertainty sources, world learning,
+//! Monte-Carlo trials of the very localiser that ships to the robot, and their reports.
+//!
+//! ```text
+//! world (generated | imported | file) -> visibility -> camera: stereo observation
+//!      -> uncertainty (the sources, in pipeline order) -> perturbed observation
+//!           |-> learning: triangulate -> stereo edge model per view -> database bytes
+//!           |-> monte_carlo: left-image segments -> Scene -> edgeloc::localize::Localizer -> outcome
+//! outcomes -> statistics -> report
+//! ```
+//!
+//! Arrows between modules point one way: `world < camera < uncertainty < learning < monte_carlo < report < cli`.
+
+pub mod camera;
+pub mod learning;
+pub mod monte_carlo;
+pub mod random;
+pub mod uncertainty;
+pub mod world;

@@ -1,0 +1,54 @@
+//! What is kept of one trial: one line of `trials.csv`. No wall times, so that runs compare byte for byte.
+
+use serde::{Deserialize, Serialize};
+
+/// How a trial ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    /// The localiser named a node.
+    Localized,
+    /// The localiser said that it can't tell.
+    Unknown,
+    /// The localiser refused the look, with an error: a failure of ours, counted as a failed trial.
+    Error,
+}
+
+/// One kidnapped-robot trial: where the robot truly was, what it answered and how it got there.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TrialRecord {
+    /// Name of the row (setting) of the run.
+    pub row: String,
+    /// Index of the trial in its row, from 0; the same index means the same robot pose in rows with the same start.
+    pub trial: u32,
+    /// Index of the map's noise draw that this trial used.
+    pub map: u32,
+    /// True position of the left camera in the world frame [m].
+    pub true_x_m: f32,
+    /// True position of the left camera in the world frame [m].
+    pub true_y_m: f32,
+    /// True heading at the first look [degrees], counter-clockwise from +x.
+    pub true_heading_deg: f32,
+    /// The node nearest to the true position.
+    pub nearest_node: u32,
+    /// The second nearest node (equal to the nearest in a map of one node).
+    pub second_nearest_node: u32,
+    /// Distance to the nearest node [m].
+    pub nearest_node_distance_m: f32,
+    /// How the trial ended.
+    pub outcome: Outcome,
+    /// The node answered, if any.
+    pub answered_node: Option<u32>,
+    /// Whether the answered node is one of the two nearest (the paper's definition).
+    pub is_success: bool,
+    /// Looks taken.
+    pub looks: u32,
+    /// Segments of all looks together that entered the matching.
+    pub scene_segments: u32,
+    /// Accumulated score of the leading node, Bhattacharyya coefficients summed over looks.
+    pub leader_score: f64,
+    /// Accumulated score of the best other node still a candidate before the last look; 0 when there is none.
+    pub runner_up_score: f64,
+    /// Accumulated score of the better of the two nearest nodes, if it was still a candidate.
+    pub truth_score: Option<f64>,
+}
