@@ -36,3 +36,4 @@
 
 pub mod geometry;
 pub mod math;
+pub mod pgh;

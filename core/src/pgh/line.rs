@@ -1,0 +1,74 @@
+//! A segment in the fixed-point form that histograms are built from.
+
+use super::PghShape;
+use crate::geometry::{BinaryAngle, Point2, Polarity, Segment2};
+use crate::math;
+use zerocopy::{FromBytes, Immutable, IntoBytes};
+
+/// A segment of a scene, in integers: end points in Q4 px, unit normal in Q14, direction as a binary angle.
+///
+/// With polarity the line is directed so that the brighter side lies to its left, and directions have the period
+/// 2 pi. Without, the line has no direction: it is walked so that its angle lies in `[0, pi)`, whichever end point
+/// came first. (That choice jumps only between near-horizontal lines, which no scene keeps.)
+#[derive(Debug, Clone, Copy, PartialEq, Eq, FromBytes, IntoBytes, Immutable)]
+#[repr(C)]
+pub struct Line {
+    pub(super) start_q4: [i32; 2],
+    pub(super) end_q4: [i32; 2],
+    pub(super) midpoint_q4: [i32; 2],
+    pub(super) normal_q14: [i32; 2],
+    pub(super) length_q4: u32,
+    pub(super) order: u32,
+    pub(super) direction: u32,
+}
+
+impl Line {
+    /// The fixed-point form of `segment`, the `order`-th of its scene, for histograms of the given shape.
+    #[must_use]
+    pub fn new(segment: &Segment2, order: u32, shape: &PghShape) -> Self {
+        let walked_backwards = if shape.uses_polarity {
+            segment.polarity() == Polarity::RightBrighter
+        } else {
+            let (dx, dy) = (segment.end().x - segment.start().x, segment.end().y - segment.start().y);
+            dy < 0.0 || (dy == 0.0 && dx < 0.0)
+        };
+        let (from, to) =
+            if walked_backwards { (segment.end(), segment.start()) } else { (segment.start(), segment.end()) };
+        let (dx, dy) = (to.x - from.x, to.y - from.y);
+        let length = math::length(dx, dy);
+        Self {
+            start_q4: to_q4(from),
+            end_q4: to_q4(to),
+            midpoint_q4: to_q4(from.lerp(to, 0.5)),
+            normal_q14: [math::round(-dy / length * 16_384.0) as i32, math::round(dx / length * 16_384.0) as i32],
+            length_q4: math::round(length * 16.0) as u32,
+            order,
+            direction: u32::from(BinaryAngle::from_radians(math::atan2(dy, dx), shape.period_radians()).0),
+        }
+    }
+
+    /// Length in units of 1/16 px.
+    #[must_use]
+    pub const fn length_q4(&self) -> u32 {
+        self.length_q4
+    }
+
+    /// Direction as a fraction of the shape's period.
+    #[must_use]
+    pub const fn direction(&self) -> BinaryAngle {
+        BinaryAngle((self.direction & 0xffff) as u16)
+    }
+
+    /// Signed perpendicular distance of `point_q4` from the infinite line, in Q18 px.
+    ///
+    /// Coordinates are within 2048 px, so the result is below 4096 sqrt(2) px and fits.
+    pub(super) fn perpendicular_distance_q18(&self, point_q4: [i32; 2]) -> i32 {
+        let (dx, dy) = (point_q4[0] - self.midpoint_q4[0], point_q4[1] - self.midpoint_q4[1]);
+        // Each product fits by itself; only the sum is bounded by Cauchy and Schwarz, so it may pass the border.
+        self.normal_q14[0].wrapping_mul(dx).wrapping_add(self.normal_q14[1].wrapping_mul(dy))
+    }
+}
+
+fn to_q4(point: Point2) -> [i32; 2] {
+    [math::round(point.x * 16.0) as i32, math::round(point.y * 16.0) as i32]
+}

@@ -1,0 +1,107 @@
+//! The longest lines of a scene, in memory of a fixed size.
+
+use super::Line;
+
+/// Keeps the longest of the lines offered, as many as the caller's slice holds; equal lengths: the first offered.
+///
+/// A binary heap with the line to be replaced next on top, so that any number of lines may be offered.
+#[derive(Debug)]
+pub struct LongestLines<'m> {
+    storage: &'m mut [Line],
+    count: usize,
+}
+
+impl<'m> LongestLines<'m> {
+    /// No lines yet, room for as many as `storage` holds.
+    pub fn new(storage: &'m mut [Line]) -> Self {
+        Self { storage, count: 0 }
+    }
+
+    /// Keeps `line` if there is room or it is longer than the shortest kept.
+    pub fn offer(&mut self, line: Line) {
+        if self.count < self.storage.len() {
+            self.storage[self.count] = line;
+            self.count += 1;
+            self.sift_up(self.count - 1);
+        } else if self.count > 0 && goes_before(&self.storage[0], &line) {
+            self.storage[0] = line;
+            self.sift_down();
+        }
+    }
+
+    /// The lines kept, in no particular but a reproducible order.
+    #[must_use]
+    pub fn into_lines(self) -> &'m [Line] {
+        let Self { storage, count } = self;
+        &storage[..count]
+    }
+
+    fn sift_up(&mut self, mut child: usize) {
+        while child > 0 {
+            let parent = (child - 1) / 2;
+            if !goes_before(&self.storage[child], &self.storage[parent]) {
+                return;
+            }
+            self.storage.swap(child, parent);
+            child = parent;
+        }
+    }
+
+    fn sift_down(&mut self) {
+        let mut parent = 0;
+        loop {
+            let (left, right) = (2 * parent + 1, 2 * parent + 2);
+            let mut first = parent;
+            for child in [left, right] {
+                if child < self.count && goes_before(&self.storage[child], &self.storage[first]) {
+                    first = child;
+                }
+            }
+            if first == parent {
+                return;
+            }
+            self.storage.swap(parent, first);
+            parent = first;
+        }
+    }
+}
+
+/// Whether `a` is given up before `b`: the shorter, of equals the later.
+fn goes_before(a: &Line, b: &Line) -> bool {
+    (a.length_q4, b.order) < (b.length_q4, a.order)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Point2, Polarity, Segment2};
+    use crate::pgh::PghShape;
+
+    fn line(length_px: f32, order: u32) -> Line {
+        let segment = Segment2::new(Point2::new(0.0, 0.0), Point2::new(0.0, length_px), Polarity::LeftBrighter);
+        Line::new(&segment.expect("valid"), order, &PghShape::paper())
+    }
+
+    #[test]
+    fn the_longest_are_kept_and_ties_go_to_the_first() {
+        let lengths = [20.0, 50.0, 30.0, 50.0, 10.0, 50.0, 40.0, 20.0];
+        let mut storage = [line(1.0, 0); 4];
+        let mut longest = LongestLines::new(&mut storage);
+        for (order, length) in lengths.iter().enumerate() {
+            longest.offer(line(*length, order as u32));
+        }
+        let mut kept = [0; 4];
+        for (slot, line) in kept.iter_mut().zip(longest.into_lines()) {
+            *slot = line.order;
+        }
+        kept.sort_unstable();
+        assert_eq!(kept, [1, 3, 5, 6]);
+    }
+
+    #[test]
+    fn no_room_keeps_nothing() {
+        let mut longest = LongestLines::new(&mut []);
+        longest.offer(line(20.0, 0));
+        assert!(longest.into_lines().is_empty());
+    }
+}

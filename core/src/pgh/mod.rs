@@ -1,0 +1,30 @@
+//! Pairwise geometric histograms (PGH): the descriptor of a scene.
+//!
+//! A histogram about a *reference line* holds where all other segments of the scene lie relative to it: their
+//! perpendicular distances and relative angles, weighted by length (paper, section 3.2; Evans, Thacker and Mayhew
+//! 1993). A scene has one histogram for each of its segments. What is kept is the histogram's **root form**: each bin
+//! of the histogram, normalised to sum 1, as its square root in Q15. The Bhattacharyya coefficient of two histograms is
+//! then a dot product.
+//!
+//! Everything here is integer arithmetic, so that all machines agree on every bit:
+//!
+//! 1. Image coordinates are rounded to 1/16 px (Q4), normals to Q14, directions to [`BinaryAngle`]s.
+//! 2. A segment's mass is spread evenly over the span of its perpendicular distances through a difference array that
+//!    is summed once; being integers, what is added and taken away cancels exactly.
+//! 3. Square roots come from a table with interpolation, within two units of the last place of Q15.
+//!
+//! [`BinaryAngle`]: crate::geometry::BinaryAngle
+
+mod builder;
+mod line;
+mod longest_lines;
+mod root;
+mod shape;
+
+pub use builder::HistogramBuilder;
+pub use line::Line;
+pub use longest_lines::LongestLines;
+pub use shape::{DistanceKind, PghShape, ShapeError};
+
+/// One in the fixed-point format of root histograms.
+pub const ROOT_ONE: i16 = i16::MAX;
