@@ -34,6 +34,8 @@
 //! identical decision and scores on x86-64, Cortex-M, aarch64 and wasm32.
 #![no_std]
 
+pub mod database;
 pub mod geometry;
+pub mod matching;
 pub mod math;
 pub mod pgh;

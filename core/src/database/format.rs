@@ -1,0 +1,111 @@
+//! The byte format of a topological database, version 1.
+//!
+//! Little-endian, no alignment needed. Offsets in bytes:
+//!
+//! | offset | type | content |
+//! |---:|---|---|
+//! | 0 | 8 bytes | magic `"edgemap\n"` |
+//! | 8 | u16 | version, 1 |
+//! | 10 | u16 | views learned at each node, at least 1 |
+//! | 12 | u32 | CRC-32 (ISO-HDLC) of everything from offset 16 to the end |
+//! | 16 | u32 | length of the whole database; bytes after it are ignored |
+//! | 20 | u32 | number of nodes N, at least 1 |
+//! | 24 | u32 | number of segments S of all nodes |
+//! | 28 | u16, u16 | image width and height \[px\] |
+//! | 32 | f32 | focal length \[px\] |
+//! | 36 | f32, f32 | principal point x and y \[px\] |
+//! | 44 | f32 | stereo baseline \[m\] |
+//! | 48 | f32 | camera height \[m\] |
+//! | 52 | f32 | near limit \[m\] |
+//! | 56 | f32, f32 | least and greatest depth of a stereo match that was kept \[m\] |
+//! | 64 | N x 16 | the nodes |
+//! | 64 + 16 N | S x 12 | the segments, node after node |
+//!
+//! A node is
+//!
+//! | offset | type | content |
+//! |---:|---|---|
+//! | 0 | i32, i32 | position x and y in the world frame \[mm\] |
+//! | 8 | u32 | index of its first segment: the sum of the counts before it |
+//! | 12 | u32 | number of its segments |
+//!
+//! A segment is six i16: start x, y, z and end x, y, z \[mm\] in the node frame (origin at the node at camera height, axes
+//! parallel to the world's). Its contrast polarity is the order of the two points: walking from start to end as seen in
+//! an image, the brighter side lies to the left.
+//!
+//! A reader refuses any other version; a writer of a changed layout raises it.
+
+use zerocopy::little_endian::{F32, I16, I32, U16, U32};
+use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
+
+/// The first eight bytes.
+pub const MAGIC: [u8; 8] = *b"edgemap\n";
+/// The version this crate reads and writes.
+pub const VERSION: u16 = 1;
+/// Where the part guarded by the CRC begins.
+pub const CRC_START: usize = 16;
+/// Length of the header.
+pub const HEADER_LEN: usize = size_of::<Header>();
+/// Length of a node.
+pub const NODE_LEN: usize = size_of::<NodeEntry>();
+/// Length of a segment.
+pub const SEGMENT_LEN: usize = size_of::<SegmentEntry>();
+
+/// The checksum of the part of a database that it guards.
+#[must_use]
+pub fn checksum(guarded: &[u8]) -> u32 {
+    const CRC: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
+    CRC.checksum(guarded)
+}
+
+#[derive(Debug, Clone, Copy, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
+#[repr(C)]
+pub(super) struct Header {
+    pub(super) magic: [u8; 8],
+    pub(super) version: U16,
+    pub(super) views_per_node: U16,
+    pub(super) crc: U32,
+    pub(super) length: U32,
+    pub(super) node_count: U32,
+    pub(super) segment_count: U32,
+    pub(super) image_size_px: [U16; 2],
+    pub(super) focal_length_px: F32,
+    pub(super) principal_point_px: [F32; 2],
+    pub(super) baseline_m: F32,
+    pub(super) camera_height_m: F32,
+    pub(super) near_limit_m: F32,
+    pub(super) model_depths_m: [F32; 2],
+}
+
+#[derive(Debug, Clone, Copy, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
+#[repr(C)]
+pub(super) struct NodeEntry {
+    pub(super) position_mm: [I32; 2],
+    pub(super) first_segment: U32,
+    pub(super) segment_count: U32,
+}
+
+#[derive(Debug, Clone, Copy, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
+#[repr(C)]
+pub(super) struct SegmentEntry {
+    pub(super) start_mm: [I16; 3],
+    pub(super) end_mm: [I16; 3],
+}
+
+/// Length of a database, if it fits the format.
+pub(super) fn total_len(node_count: usize, segment_count: usize) -> Option<usize> {
+    let nodes = node_count.checked_mul(NODE_LEN)?;
+    let segments = segment_count.checked_mul(SEGMENT_LEN)?;
+    let length = HEADER_LEN.checked_add(nodes)?.checked_add(segments)?;
+    u32::try_from(length).is_ok().then_some(length)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_above_states_the_true_lengths() {
+        assert_eq!((HEADER_LEN, NODE_LEN, SEGMENT_LEN), (64, 16, 12));
+    }
+}

@@ -1,0 +1,135 @@
+//! The two forms in which root histograms meet: sparse rows and dense panels.
+
+use super::kernels::{self, LANES};
+use crate::geometry::CapacityError;
+use crate::pgh::{HistogramBuilder, Line};
+use zerocopy::{FromBytes, Immutable, IntoBytes};
+
+/// Two neighbouring bins of a sparse histogram, at least one of them not empty.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, FromBytes, IntoBytes, Immutable)]
+#[repr(C)]
+pub struct BinPair {
+    /// Bins `2 index` and `2 index + 1`.
+    pub index: u16,
+    /// Their square roots in Q15.
+    pub roots: [i16; 2],
+}
+
+/// The same pair of bins of every line of a panel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, FromBytes, IntoBytes, Immutable)]
+#[repr(C)]
+pub struct PanelRow {
+    /// Square roots in Q15 of two bins, for each line.
+    pub roots: [[i16; 2]; LANES],
+}
+
+impl PanelRow {
+    const EMPTY: Self = Self { roots: [[0; 2]; LANES] };
+}
+
+/// Number of bin pairs that hold `bins` bins.
+pub(super) const fn pair_count(bins: usize) -> usize {
+    bins.div_ceil(2)
+}
+
+/// The histograms of a scene, one sparse row for each reference line.
+#[derive(Debug)]
+pub struct RootRows<'m> {
+    pairs: &'m mut [BinPair],
+    /// Where each row ends in `pairs`.
+    ends: &'m mut [u32],
+    count: usize,
+}
+
+impl<'m> RootRows<'m> {
+    /// Bin pairs that always suffice for `lines` rows of `bins` bins.
+    #[must_use]
+    pub const fn pairs_len(lines: usize, bins: usize) -> usize {
+        lines * pair_count(bins)
+    }
+
+    /// No rows yet; room for as many as `ends` holds.
+    pub fn new(pairs: &'m mut [BinPair], ends: &'m mut [u32]) -> Self {
+        Self { pairs, ends, count: 0 }
+    }
+
+    /// Replaces the rows by the histograms of all `lines`.
+    ///
+    /// # Errors
+    /// When there are more lines than rows, or more bin pairs than fit; nothing is kept then.
+    pub fn rebuild(&mut self, builder: &mut HistogramBuilder<'_>, lines: &[Line]) -> Result<(), CapacityError> {
+        self.count = 0;
+        if lines.len() > self.ends.len() {
+            return Err(CapacityError { what: "scene rows", capacity: self.ends.len(), needed: lines.len() });
+        }
+        let mut filled = 0_usize;
+        for reference in 0..lines.len() {
+            let row_start = filled;
+            let pairs = &mut *self.pairs;
+            builder.build(lines, reference, |bin, root| {
+                let (index, odd) = ((bin / 2) as u16, bin % 2);
+                let continues = filled > row_start && pairs.get(filled - 1).is_some_and(|pair| pair.index == index);
+                if !continues {
+                    if let Some(pair) = pairs.get_mut(filled) {
+                        *pair = BinPair { index, roots: [0; 2] };
+                    }
+                    filled += 1;
+                }
+                if let Some(pair) = pairs.get_mut(filled - 1) {
+                    pair.roots[odd] = root;
+                }
+            });
+            if filled > self.pairs.len() {
+                return Err(CapacityError { what: "scene bin pairs", capacity: self.pairs.len(), needed: filled });
+            }
+            self.ends[reference] = filled as u32;
+        }
+        self.count = lines.len();
+        Ok(())
+    }
+
+    /// The rows in the order of the lines.
+    pub fn rows(&self) -> impl Iterator<Item = &[BinPair]> {
+        let ends = &self.ends[..self.count];
+        let starts = core::iter::once(0).chain(ends.iter().copied());
+        starts.zip(ends).map(|(start, end)| &self.pairs[start as usize..*end as usize])
+    }
+}
+
+/// The histograms of up to [`LANES`] lines of a view, transposed.
+#[derive(Debug)]
+pub struct Panel<'m> {
+    rows: &'m mut [PanelRow],
+}
+
+impl<'m> Panel<'m> {
+    /// Rows of a panel of histograms with `bins` bins.
+    #[must_use]
+    pub const fn rows_len(bins: usize) -> usize {
+        pair_count(bins)
+    }
+
+    /// A panel over the caller's memory, [`Self::rows_len`] rows for the shape that it will be filled with.
+    pub fn new(rows: &'m mut [PanelRow]) -> Self {
+        Self { rows }
+    }
+
+    /// Fills the panel with the histograms of `lines` about up to [`LANES`] of them, from the `first`-th on.
+    pub fn fill(&mut self, builder: &mut HistogramBuilder<'_>, lines: &[Line], first: usize) {
+        self.rows.fill(PanelRow::EMPTY);
+        for (lane, reference) in (first..lines.len()).take(LANES).enumerate() {
+            let rows = &mut *self.rows;
+            builder.build(lines, reference, |bin, root| {
+                if let Some(row) = rows.get_mut(bin / 2) {
+                    row.roots[lane][bin % 2] = root;
+                }
+            });
+        }
+    }
+
+    /// The best coefficient in Q30 of `row` with a line of the panel; lanes left empty give 0.
+    #[must_use]
+    pub fn best_coefficient(&self, row: &[BinPair]) -> i32 {
+        kernels::dot_row(row, self.rows).into_iter().fold(0, i32::max)
+    }
+}

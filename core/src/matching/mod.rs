@@ -1,0 +1,16 @@
+//! Matching of histograms: Bhattacharyya coefficients and the score of a scene against a view.
+//!
+//! The coefficient of two histograms `a` and `b` is `sum sqrt(a_i) sqrt(b_i)` (Eq. (1), Tian et al., who write D): 1 for
+//! equal, 0 for disjoint histograms. It is **not** the Hellinger distance that some libraries call by Bhattacharyya's
+//! name. In root form it is a dot product of Q15 numbers, a Q30 integer that can't overflow (Cauchy and Schwarz).
+//!
+//! A scene's rows are sparse, a view's histograms dense and transposed in panels of [`LANES`] lines: each non-zero pair
+//! of scene bins meets [`LANES`] view lines at once, and only the best coefficient of each row is kept.
+
+mod bhattacharyya;
+mod kernels;
+mod view_score;
+
+pub use bhattacharyya::{BinPair, Panel, PanelRow, RootRows};
+pub use kernels::LANES;
+pub use view_score::{ViewScore, score_view};
