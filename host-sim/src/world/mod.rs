@@ -2,6 +2,10 @@
 //!
 //! World frame: metres, z up, the floor a robot drives on at z = 0.
 
+mod occlusion;
+mod visibility;
 mod wireframe;
 
+pub use occlusion::{Occluders, SAME_PLANE_M, STOP_SHORT_M};
+pub use visibility::ViewpointVisibility;
 pub use wireframe::{Surfaces, WireframeWorld};
