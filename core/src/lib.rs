@@ -36,6 +36,7 @@
 
 pub mod database;
 pub mod geometry;
+pub mod localize;
 pub mod matching;
 pub mod math;
 pub mod pgh;

@@ -7,6 +7,7 @@
 
 use super::root::root_q15;
 use super::{DistanceKind, Line, PghShape};
+use crate::geometry::CapacityError;
 
 /// Positions along the distance axis have this many fractional bits of a bin.
 const POSITION_BITS: u32 = 12;
@@ -34,11 +35,16 @@ impl<'m> HistogramBuilder<'m> {
         (shape.distance_bins as usize + 2) * shape.angle_bins as usize
     }
 
-    /// A builder for a [checked](PghShape::checked) shape, or `None` if `memory` is not [`Self::memory_len`] long.
-    #[must_use]
-    pub fn new(shape: &PghShape, memory: &'m mut [i32]) -> Option<Self> {
+    /// A builder for a [checked](PghShape::checked) shape, working in `memory`.
+    ///
+    /// # Errors
+    /// When `memory` is shorter than [`Self::memory_len`].
+    pub fn new(shape: &PghShape, memory: &'m mut [i32]) -> Result<Self, CapacityError> {
+        let (capacity, needed) = (memory.len(), Self::memory_len(shape));
+        let what = "histogram masses";
+        let memory = memory.get_mut(..needed).ok_or(CapacityError { what, capacity, needed })?;
         let bins_per_px = 1.0 / shape.distance_bin_width_px();
-        (memory.len() == Self::memory_len(shape)).then_some(Self {
+        Ok(Self {
             distance_bins: usize::from(shape.distance_bins),
             angle_bins: usize::from(shape.angle_bins),
             distance: shape.distance,

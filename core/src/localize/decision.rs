@@ -1,0 +1,58 @@
+//! What the localiser answers after each look.
+
+use crate::database::NodeId;
+use crate::geometry::{Angle, Heading, Point2};
+
+/// The answer to a look.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Decision {
+    /// The robot is at this place.
+    Localized(Localized),
+    /// Not sure yet: turn, look and observe again.
+    LookAgain {
+        /// The turn asked for. A caller that can't make it reports what it did instead.
+        turn: Angle,
+    },
+    /// The localiser can't tell.
+    Unknown {
+        /// Why not.
+        reason: UnknownReason,
+    },
+}
+
+/// Where the robot is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Localized {
+    /// The node that the robot is at.
+    pub node: NodeId,
+    /// The metric pose; absent in paper mode, which names a node only.
+    pub pose: Option<PoseEstimate>,
+    /// Probability that the answer is right; absent in paper mode.
+    pub probability: Option<f32>,
+}
+
+/// A metric pose with its uncertainty.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PoseEstimate {
+    /// Position in the world frame [m].
+    pub position: Point2,
+    /// Heading at the last look.
+    pub heading: Heading,
+    /// Covariance of (x, y, heading) in m, m and rad.
+    pub covariance: [[f32; 3]; 3],
+}
+
+/// Why the localiser can't tell where it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum UnknownReason {
+    /// No look of the attempt showed enough to compare with any node.
+    SceneTooPoor,
+}
+
+impl core::fmt::Display for UnknownReason {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::SceneTooPoor => f.write_str("no look showed enough edges to compare with any node"),
+        }
+    }
+}

@@ -1,0 +1,18 @@
+//! The localiser: looks in, decisions out.
+
+mod candidates;
+mod config;
+mod decision;
+mod localizer;
+mod look;
+mod prediction;
+mod score_margin;
+mod workspace;
+
+pub use candidates::{CandidateSet, NodeScore};
+pub use config::{ConfigError, LocalizerConfig};
+pub use decision::{Decision, Localized, PoseEstimate, UnknownReason};
+pub use localizer::{Localizer, ObserveError, StartError};
+pub use look::{HeadingPrior, Look, Motion};
+pub use prediction::predict_view;
+pub use score_margin::ScoreMargin;

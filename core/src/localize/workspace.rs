@@ -1,0 +1,117 @@
+//! The localiser's memory: one slice from the caller, divided once.
+
+use super::{LocalizerConfig, NodeScore};
+use crate::geometry::CapacityError;
+use crate::matching::{BinPair, Panel, PanelRow, RootRows};
+use crate::pgh::{HistogramBuilder, Line};
+use zerocopy::{FromBytes, IntoBytes};
+
+/// The parts that the caller's memory is divided into.
+#[derive(Debug)]
+pub(super) struct Workspace<'m> {
+    pub(super) scene_lines: &'m mut [Line],
+    pub(super) view_lines: &'m mut [Line],
+    pub(super) masses: &'m mut [i32],
+    pub(super) scene_pairs: &'m mut [BinPair],
+    pub(super) scene_row_ends: &'m mut [u32],
+    pub(super) panel_rows: &'m mut [PanelRow],
+    pub(super) best_coefficients: &'m mut [i32],
+    pub(super) node_scores: &'m mut [NodeScore],
+}
+
+/// How many items each part has.
+struct Lengths {
+    lines: usize,
+    masses: usize,
+    pairs: usize,
+    panel_rows: usize,
+    nodes: usize,
+}
+
+impl Lengths {
+    const fn of(config: &LocalizerConfig, node_count: usize) -> Self {
+        let (lines, bins) = (config.max_segments as usize, config.shape.bin_count());
+        Self {
+            lines,
+            masses: HistogramBuilder::memory_len(&config.shape),
+            pairs: RootRows::pairs_len(lines, bins),
+            panel_rows: Panel::rows_len(bins),
+            nodes: node_count,
+        }
+    }
+}
+
+/// Number of `u64` that a localiser works on.
+pub(super) const fn memory_len(config: &LocalizerConfig, node_count: usize) -> usize {
+    let lengths = Lengths::of(config, node_count);
+    2 * words::<Line>(lengths.lines)
+        + words::<i32>(lengths.masses)
+        + words::<BinPair>(lengths.pairs)
+        + words::<u32>(lengths.lines)
+        + words::<PanelRow>(lengths.panel_rows)
+        + words::<i32>(lengths.lines)
+        + words::<NodeScore>(lengths.nodes)
+}
+
+const fn words<T>(count: usize) -> usize {
+    (count * size_of::<T>()).div_ceil(size_of::<u64>())
+}
+
+impl<'m> Workspace<'m> {
+    /// Divides the beginning of `memory`, at least [`memory_len`] long.
+    pub(super) fn divide(
+        memory: &'m mut [u64],
+        config: &LocalizerConfig,
+        node_count: usize,
+    ) -> Result<Self, CapacityError> {
+        let lengths = Lengths::of(config, node_count);
+        let too_small = CapacityError {
+            what: "localizer memory in 64-bit words",
+            capacity: memory.len(),
+            needed: memory_len(config, node_count),
+        };
+        let mut rest = Rest { words: memory };
+        let mut divide = || {
+            Some(Self {
+                scene_lines: rest.take(lengths.lines)?,
+                view_lines: rest.take(lengths.lines)?,
+                masses: rest.take(lengths.masses)?,
+                scene_pairs: rest.take(lengths.pairs)?,
+                scene_row_ends: rest.take(lengths.lines)?,
+                panel_rows: rest.take(lengths.panel_rows)?,
+                best_coefficients: rest.take(lengths.lines)?,
+                node_scores: rest.take(lengths.nodes)?,
+            })
+        };
+        divide().ok_or(too_small)
+    }
+}
+
+/// What is left of the caller's memory.
+struct Rest<'m> {
+    words: &'m mut [u64],
+}
+
+impl<'m> Rest<'m> {
+    fn take<T: FromBytes + IntoBytes>(&mut self, count: usize) -> Option<&'m mut [T]> {
+        let (taken, rest) = core::mem::take(&mut self.words).split_at_mut_checked(words::<T>(count))?;
+        self.words = rest;
+        let (items, _) = <[T]>::mut_from_prefix_with_elems(taken.as_mut_bytes(), count).ok()?;
+        Some(items)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_stated_length_is_just_enough() {
+        let config = LocalizerConfig::paper();
+        const NEEDED: usize = memory_len(&LocalizerConfig::paper(), 72);
+        let mut memory = [0; NEEDED];
+        assert!(Workspace::divide(&mut memory, &config, 72).is_ok());
+        let error = Workspace::divide(&mut memory[1..], &config, 72).expect_err("one word short");
+        assert_eq!((error.capacity, error.needed), (NEEDED - 1, NEEDED));
+    }
+}
