@@ -73,12 +73,12 @@ impl Scenario {
 
 fn check_localizer(localizer: &LocalizerSettings) -> Result<(), IllegalValue> {
     let LocalizerSettings { pgh, .. } = localizer;
-    within("localizer.score_margin", localizer.score_margin, 0.0..=12.0, "the paper's B_th is 0.1")?;
-    within("localizer.turn_deg", localizer.turn_deg, -180.0..=180.0, "the paper turns by 30 degrees")?;
+    within("localizer.score_margin", localizer.score_margin, 0.0..=1000.0, "the paper's B_th is 0.1")?;
+    within("localizer.turn_deg", localizer.turn_deg, -360.0..=360.0, "the paper turns by 30 degrees")?;
     within("localizer.max_looks", localizer.max_looks, 1..=1000, "12 looks of 30 degrees close the circle")?;
-    within("localizer.min_length_px", localizer.min_length_px, 0.0625..=2048.0, "12 px is the default")?;
-    within("localizer.horizontal_exclusion_deg", localizer.horizontal_exclusion_deg, 0.0..=45.0, "5 is the default")?;
-    within("localizer.max_segments", localizer.max_segments, 1..=4096, "150 is the default")?;
+    within("localizer.min_length_px", localizer.min_length_px, 0.0..=2048.0, "12 px is the default")?;
+    within("localizer.horizontal_exclusion_deg", localizer.horizontal_exclusion_deg, 0.0..=89.0, "5 is the default")?;
+    within("localizer.max_segments", localizer.max_segments, 1..=1024, "150 is the default")?;
     within("localizer.pgh.distance_bins", pgh.distance_bins, 1..=256, "the paper's best is 15")?;
     within("localizer.pgh.angle_bins", pgh.angle_bins, 1..=256, "the paper's best is 32")?;
     within("localizer.pgh.max_distance_px", pgh.max_distance_px, 1.0..=2048.0, "200 to 600 hardly matter")?;
@@ -139,7 +139,7 @@ mod tests {
         assert_eq!(refused(|s| s.near_radius_m = f64::NAN), "near_radius_m");
         assert_eq!(refused(|s| s.name = "../up".to_owned()), "name");
         assert_eq!(refused(|s| s.rig.baseline_m = 0.0), "rig");
-        assert_eq!(refused(|s| s.localizer.turn_deg = 181.0), "localizer.turn_deg");
+        assert_eq!(refused(|s| s.localizer.turn_deg = 361.0), "localizer.turn_deg");
         assert_eq!(refused(|s| s.localizer.pgh.angle_bins = 257), "localizer.pgh.angle_bins");
         assert_eq!(refused(|s| s.localizer.pgh.max_distance_px = 1.0), "localizer.pgh.distance_bins");
         assert_eq!(refused(|s| s.rows.clear()), "rows");

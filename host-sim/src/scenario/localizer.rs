@@ -1,5 +1,8 @@
 //! The localiser as a scenario states it; by default the paper's.
 
+use edgeloc::geometry::Angle;
+use edgeloc::localize::LocalizerConfig;
+use edgeloc::pgh::{DistanceKind, PghShape};
 use serde::{Deserialize, Serialize};
 
 /// The localiser's settings.
@@ -39,6 +42,30 @@ impl Default for LocalizerSettings {
     }
 }
 
+impl LocalizerSettings {
+    /// The localiser's parameters in a row with or without polarity.
+    #[must_use]
+    pub fn localizer_config(&self, polarity: bool) -> LocalizerConfig {
+        let PghSettings { distance_bins, angle_bins, max_distance_px, signed, angle_interpolation } = self.pgh;
+        LocalizerConfig {
+            shape: PghShape {
+                distance_bins,
+                angle_bins,
+                max_distance_px: max_distance_px as f32,
+                distance: if signed { DistanceKind::Signed } else { DistanceKind::Unsigned },
+                uses_polarity: polarity,
+                interpolates_angle: angle_interpolation,
+            },
+            score_margin: self.score_margin as f32,
+            turn: Angle::from_degrees(self.turn_deg as f32),
+            max_looks: self.max_looks,
+            min_length_px: self.min_length_px as f32,
+            horizontal_exclusion: Angle::from_degrees(self.horizontal_exclusion_deg as f32),
+            max_segments: self.max_segments,
+        }
+    }
+}
+
 /// Which localiser a run uses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -66,5 +93,15 @@ pub struct PghSettings {
 impl Default for PghSettings {
     fn default() -> Self {
         Self { distance_bins: 15, angle_bins: 32, max_distance_px: 400.0, signed: true, angle_interpolation: true }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_default_is_the_published_localiser() {
+        assert_eq!(LocalizerSettings::default().localizer_config(false), LocalizerConfig::paper());
     }
 }
