@@ -1,0 +1,90 @@
+//! What the steps need on the machine: compiler targets through rustup, an emulator through Debian's packages.
+
+use std::process::{Command, Stdio};
+
+use crate::steps::THUMB_TARGETS;
+use crate::summary::Outcome;
+use crate::workspace::{Workspace, run};
+
+/// The emulator's program and the Debian package that brings it.
+const EMULATOR: &str = "qemu-system-arm";
+
+/// The one command for those who are not root.
+const INSTALL_EMULATOR: &str = "apt-get install --no-install-recommends qemu-system-arm";
+
+/// Installs what is missing. A target that can't be added is a failure; a package that needs another user is a skip.
+pub(crate) fn run_setup(workspace: &Workspace) -> Outcome {
+    if let Err(reason) = add_targets(workspace) {
+        return Outcome::Failed(reason);
+    }
+    if is_present(EMULATOR) {
+        return Outcome::Passed;
+    }
+    if !is_root() {
+        return Outcome::Skipped(format!("{EMULATOR} is missing; install it: sudo {INSTALL_EMULATOR}"));
+    }
+    match install_emulator(workspace) {
+        Ok(()) => Outcome::Passed,
+        Err(reason) => Outcome::Failed(reason),
+    }
+}
+
+/// Why the emulator can't be used, with the remedy; `None` when it is there.
+pub(crate) fn missing_emulator() -> Option<String> {
+    (!is_present(EMULATOR)).then(|| format!("{EMULATOR} is missing; install it: sudo {INSTALL_EMULATOR}"))
+}
+
+/// Adds the targets that are not installed yet; without a missing one the network is not touched.
+fn add_targets(workspace: &Workspace) -> Result<(), String> {
+    let listed = workspace.tool("rustup", "").args(["target", "list", "--installed"]).output();
+    let listed = listed.map_err(|error| format!("`rustup target list` can't be started: {error}"))?;
+    let installed = String::from_utf8_lossy(&listed.stdout);
+    let missing = missing_targets(&installed);
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let mut command = workspace.tool("rustup", "");
+    command.args(["target", "add"]).args(missing);
+    run(command)
+}
+
+/// The targets that a list of installed ones, one a line, lacks.
+fn missing_targets(installed: &str) -> Vec<&'static str> {
+    THUMB_TARGETS.into_iter().filter(|target| installed.lines().all(|line| line.trim() != *target)).collect()
+}
+
+fn install_emulator(workspace: &Workspace) -> Result<(), String> {
+    let apt = |arguments: &str| {
+        let mut command = workspace.tool("apt-get", "");
+        command.env("DEBIAN_FRONTEND", "noninteractive").args(arguments.split_whitespace());
+        run(command)
+    };
+    apt("update")?;
+    apt("install --yes --no-install-recommends qemu-system-arm")
+}
+
+fn is_present(program: &str) -> bool {
+    let quiet = Command::new(program).arg("--version").stdin(Stdio::null()).stdout(Stdio::null()).status();
+    quiet.is_ok_and(|status| status.success())
+}
+
+fn is_root() -> bool {
+    Command::new("id").arg("-u").output().is_ok_and(|output| output.stdout == b"0\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_targets_not_yet_installed_are_added() {
+        assert_eq!(missing_targets(""), THUMB_TARGETS);
+        assert_eq!(missing_targets("x86_64-unknown-linux-gnu\nthumbv7em-none-eabihf\n"), [THUMB_TARGETS[1]]);
+        assert!(missing_targets(&THUMB_TARGETS.join("\n")).is_empty());
+    }
+
+    #[test]
+    fn a_program_that_does_not_exist_is_not_present() {
+        assert!(!is_present("no-such-program-anywhere"));
+    }
+}

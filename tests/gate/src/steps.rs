@@ -1,0 +1,130 @@
+//! The steps of the gate, in the order they run.
+
+use crate::setup;
+use crate::summary::Outcome;
+use crate::workspace::{Workspace, run_all};
+
+/// One named check.
+#[derive(Debug)]
+pub(crate) struct Step {
+    /// What one types to run it alone.
+    pub(crate) name: &'static str,
+    /// What it checks, in a line.
+    pub(crate) about: &'static str,
+    /// Whether the full gate runs it.
+    pub(crate) is_in_full: bool,
+    /// Whether `cargo gate quick` runs it.
+    pub(crate) is_quick: bool,
+    /// The check itself.
+    pub(crate) run: fn(&Workspace) -> Outcome,
+}
+
+/// Every step, in order.
+pub(crate) static STEPS: &[Step] = &[
+    full("setup", "targets and system packages that the other steps need", setup::run_setup),
+    quick("format", "the sources are formatted", format),
+    quick("lint", "compiler and clippy have nothing to say", lint),
+    full("docs", "the documentation builds and its links hold", docs),
+    full("tests", "unit, whole-system, layering and documentation tests", tests),
+    Step {
+        name: "units",
+        about: "the tests that take seconds: unit tests and layering",
+        is_in_full: false,
+        is_quick: true,
+        run: units,
+    },
+    full("buildings", "the data of real buildings is there, so that their tests did run", buildings),
+    full("benches", "every benchmark runs once", benches),
+    full("thumb", "the library builds for Cortex-M without std", thumb),
+    full("qemu", "the localizer on an emulated Cortex-M7 agrees with the host bit for bit", qemu),
+];
+
+/// Targets the library is built for to show that it needs no `std`.
+pub(crate) const THUMB_TARGETS: [&str; 2] = ["thumbv7em-none-eabihf", "thumbv8m.main-none-eabihf"];
+
+/// The board that QEMU emulates; its folder holds its target and its runner.
+const QEMU_BOARD: &str = "boards/qemu-mps2-an500";
+
+const fn full(name: &'static str, about: &'static str, run: fn(&Workspace) -> Outcome) -> Step {
+    Step { name, about, is_in_full: true, is_quick: false, run }
+}
+
+const fn quick(name: &'static str, about: &'static str, run: fn(&Workspace) -> Outcome) -> Step {
+    Step { name, about, is_in_full: true, is_quick: true, run }
+}
+
+fn format(workspace: &Workspace) -> Outcome {
+    run_all([workspace.cargo("", "fmt --all --check"), workspace.cargo("boards", "fmt --all --check")])
+}
+
+fn lint(workspace: &Workspace) -> Outcome {
+    run_all([
+        workspace.cargo("", "clippy --workspace --all-targets -- -D warnings"),
+        workspace.cargo(QEMU_BOARD, "clippy --locked -- -D warnings"),
+    ])
+}
+
+fn docs(workspace: &Workspace) -> Outcome {
+    let mut command = workspace.cargo("", "doc --workspace --no-deps");
+    command.env("RUSTDOCFLAGS", "-D warnings");
+    run_all([command])
+}
+
+fn tests(workspace: &Workspace) -> Outcome {
+    run_all([workspace.cargo("", "test --workspace --no-fail-fast")])
+}
+
+fn units(workspace: &Workspace) -> Outcome {
+    run_all([
+        workspace.cargo("", "test --workspace --no-fail-fast --lib --bins"),
+        workspace.cargo("", "test --package edgeloc-tests --test layering"),
+    ])
+}
+
+/// Tests that need the data of real buildings say `SKIPPED:` when it is absent, but the test runner keeps the words of
+/// passing tests to itself: so the gate says it.
+fn buildings(workspace: &Workspace) -> Outcome {
+    let folder = workspace.data_folder();
+    if folder.join("aws_small_house").is_dir() {
+        return Outcome::Passed;
+    }
+    Outcome::Skipped(format!(
+        "no folder aws_small_house in {} (set EDGELOC_DATA): tests on real buildings did not run",
+        folder.display()
+    ))
+}
+
+/// `cargo test` rather than `cargo bench`: criterion then runs each benchmark once, without a second optimised build.
+fn benches(workspace: &Workspace) -> Outcome {
+    run_all([workspace.cargo("", "test --package edgeloc-benches --benches")])
+}
+
+fn thumb(workspace: &Workspace) -> Outcome {
+    run_all(THUMB_TARGETS.map(|target| workspace.cargo("", &format!("build --package edgeloc --target {target}"))))
+}
+
+/// The board's own cargo configuration names its target and its runner, which ends the emulator after a time limit.
+fn qemu(workspace: &Workspace) -> Outcome {
+    if let Some(reason) = setup::missing_emulator() {
+        return Outcome::Skipped(reason);
+    }
+    run_all([workspace.cargo(QEMU_BOARD, "run --locked --release")])
+}
+
+#[cfg(test)]
+mod tests_of_the_table {
+    use super::*;
+
+    #[test]
+    fn names_are_unique_and_none_is_quick() {
+        for (index, step) in STEPS.iter().enumerate() {
+            assert_ne!(step.name, "quick");
+            assert!(STEPS[..index].iter().all(|earlier| earlier.name != step.name), "{} twice", step.name);
+        }
+    }
+
+    #[test]
+    fn what_a_step_needs_is_set_up_before_it() {
+        assert_eq!(STEPS[0].name, "setup");
+    }
+}
