@@ -15,6 +15,5 @@ pub mod camera;
 pub mod learning;
 pub mod monte_carlo;
 pub mod random;
-pub mod scenario;
 pub mod uncertainty;
 pub mod world;

@@ -1,0 +1,2 @@
+//! What every edgeloc board runs, whatever its pins.
+#![no_std]
