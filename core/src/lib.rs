@@ -34,6 +34,9 @@
 //! identical decision and scores on x86-64, Cortex-M, aarch64 and wasm32.
 #![no_std]
 
+#[cfg(test)]
+extern crate std;
+
 pub mod database;
 pub mod geometry;
 pub mod localize;

@@ -42,3 +42,16 @@ pub struct Motion {
     /// Standard deviation of its error, along either axis [m].
     pub step_standard_deviation_m: f32,
 }
+
+impl Motion {
+    /// A turn on the spot, taken as exact.
+    #[must_use]
+    pub const fn exact_turn(turn: Angle) -> Self {
+        Self {
+            turn,
+            turn_standard_deviation: Angle::from_radians(0.0),
+            step_m: Point2::new(0.0, 0.0),
+            step_standard_deviation_m: 0.0,
+        }
+    }
+}
