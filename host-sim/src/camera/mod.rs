@@ -1,5 +1,11 @@
-//! The stereo rig in a world: what its two images show.
+//! The stereo rig in a world: what its two images show, and the 3-D segments a stereo matcher gets back from them.
 
 mod observation;
+mod observe;
+mod pose;
+mod triangulation;
 
-pub use observation::{StereoFeature, StereoObservation};
+pub use observation::{StereoFeature, StereoObservation, move_pieces};
+pub use observe::{left_segments, observe_pieces};
+pub use pose::CameraPose;
+pub use triangulation::{MIN_OVERLAP_PX, triangulate_feature, triangulate_pieces};
