@@ -1,0 +1,117 @@
+//! Geometric approximation: fitting straight pieces to edge pixels misplaces their end points.
+//!
+//! Each end point of each piece, in each image on its own, moves by a circular Gaussian of standard deviation psi_g px
+//! (paper, section 4.2, after Ashbrook et al. 1995).
+
+use super::{SourceFacts, UncertaintySource};
+use crate::camera::{StereoObservation, move_pieces};
+use crate::random::Stream;
+use edgeloc::geometry::Point2;
+use serde::{Deserialize, Serialize};
+
+const FACTS: SourceFacts = SourceFacts {
+    key: "geometric_approximation",
+    name: "geometric approximation error",
+    symbol: "psi_g",
+    unit: "px",
+    stream_id: 3,
+    default_magnitude: 0.15,
+    legal_range: (0.0, 5.0),
+    cause: "line fitting misplaces each end point by a circular Gaussian of that standard deviation",
+    citation: "Tian et al., section 4.2, after Ashbrook et al. 1995",
+};
+
+/// Moves each end point of each piece; the magnitude is psi_g, the standard deviation in x and in y [px].
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct GeometricApproximation {
+    /// Whether the source acts.
+    pub enabled: bool,
+    /// psi_g [px].
+    pub magnitude: f64,
+}
+
+impl Default for GeometricApproximation {
+    fn default() -> Self {
+        Self { enabled: true, magnitude: FACTS.default_magnitude }
+    }
+}
+
+impl UncertaintySource for GeometricApproximation {
+    fn facts(&self) -> &'static SourceFacts {
+        &FACTS
+    }
+
+    fn is_enabled(&self) -> bool {
+        self.enabled
+    }
+
+    fn magnitude(&self) -> f64 {
+        self.magnitude
+    }
+
+    fn apply(&self, observation: &mut StereoObservation, stream: &mut Stream) {
+        for feature in &mut observation.features {
+            for pieces in [&mut feature.left, &mut feature.right] {
+                move_pieces(pieces, |piece| {
+                    (self.misplaced(piece.start(), stream), self.misplaced(piece.end(), stream))
+                });
+            }
+        }
+    }
+}
+
+impl GeometricApproximation {
+    fn misplaced(&self, point: Point2, stream: &mut Stream) -> Point2 {
+        let error = circular_gaussian(stream);
+        Point2::new(point.x + (error[0] * self.magnitude) as f32, point.y + (error[1] * self.magnitude) as f32)
+    }
+}
+
+/// Two independent standard Gaussian numbers (the polar method, Marsaglia and Bray 1964).
+///
+/// Refused draws are a matter of chance, 21 % of them, never of the machine: only `sqrt` and `libm` are used.
+fn circular_gaussian(stream: &mut Stream) -> [f64; 2] {
+    loop {
+        let (x, y) = (stream.uniform(-1.0, 1.0), stream.uniform(-1.0, 1.0));
+        let square = x * x + y * y;
+        if square > 0.0 && square < 1.0 {
+            let scale = (-2.0 * libm::log(square) / square).sqrt();
+            return [x * scale, y * scale];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::uncertainty::test_observation::{observation, perturbed};
+
+    #[test]
+    fn zero_magnitude_is_the_identity() {
+        let source = GeometricApproximation { magnitude: 0.0, ..GeometricApproximation::default() };
+        assert_eq!(perturbed(&source, 200), observation(200));
+    }
+
+    #[test]
+    fn end_points_move_by_a_circular_gaussian_of_psi() {
+        let (before, after) = (observation(10_000), perturbed(&GeometricApproximation::default(), 10_000));
+        let mut errors_px = Vec::new();
+        for (before, after) in before.features.iter().zip(&after.features) {
+            for (before, after) in [(&before.left, &after.left), (&before.right, &after.right)] {
+                for (from, to) in [(before[0].start(), after[0].start()), (before[0].end(), after[0].end())] {
+                    errors_px.push((f64::from(to.x - from.x), f64::from(to.y - from.y)));
+                }
+            }
+        }
+        let mean =
+            |value: &dyn Fn(&(f64, f64)) -> f64| errors_px.iter().map(value).sum::<f64>() / errors_px.len() as f64;
+        assert!(mean(&|error| error.0).abs() < 0.003 && mean(&|error| error.1).abs() < 0.003);
+        assert!((mean(&|error| error.0 * error.0).sqrt() - 0.15).abs() < 0.003);
+        assert!((mean(&|error| error.1 * error.1).sqrt() - 0.15).abs() < 0.003);
+        assert!(mean(&|error| error.0 * error.1).abs() < 0.0005);
+        // 68.3 % of a Gaussian lie within one standard deviation.
+        let within = mean(&|error| f64::from(u8::from(error.0.abs() < 0.15)));
+        assert!((within - 0.683).abs() < 0.01, "{within}");
+    }
+}

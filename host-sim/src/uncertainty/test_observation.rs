@@ -1,0 +1,38 @@
+//! A synthetic observation for the statistics tests of the sources.
+
+use super::UncertaintySource;
+use crate::camera::{StereoFeature, StereoObservation};
+use crate::random::Stream;
+use edgeloc::geometry::{Point2, Polarity, Segment2, StereoRig};
+use edgeloc::math;
+
+/// `count` matchable features of random direction, 10 to 250 px long, with disparities of 20 px.
+pub(super) fn observation(count: usize) -> StereoObservation {
+    let mut stream = Stream::new(1, "sample", 0, 0);
+    let features = (0..count)
+        .map(|_| {
+            let mut draw = |low: f64, high: f64| stream.uniform(low, high) as f32;
+            let (sin, cos) = math::sin_cos(draw(0.0, core::f64::consts::TAU));
+            let (length_px, start) = (draw(10.0, 250.0), Point2::new(draw(270.0, 370.0), draw(220.0, 260.0)));
+            let segment = |x: f32| {
+                let end = Point2::new(x + cos * length_px, start.y + sin * length_px);
+                Segment2::new(Point2::new(x, start.y), end, Polarity::LeftBrighter).expect("a segment")
+            };
+            let (left, right) = (vec![segment(start.x)], vec![segment(start.x - 20.0)]);
+            StereoFeature { left, right, is_matchable: true }
+        })
+        .collect();
+    StereoObservation { rig: StereoRig::reference(), features }
+}
+
+/// The observation of `count` features after one source.
+pub(super) fn perturbed(source: &dyn UncertaintySource, count: usize) -> StereoObservation {
+    let mut observation = observation(count);
+    source.apply(&mut observation, &mut unit_stream());
+    observation
+}
+
+/// A stream for one test.
+pub(super) fn unit_stream() -> Stream {
+    Stream::new(2, "test", 0, 0)
+}
