@@ -6,6 +6,6 @@ mod pose;
 mod triangulation;
 
 pub use observation::{StereoFeature, StereoObservation, move_pieces};
-pub use observe::{left_segments, observe_pieces};
+pub use observe::{left_segments, observe, observe_pieces};
 pub use pose::CameraPose;
 pub use triangulation::{MIN_OVERLAP_PX, triangulate_feature, triangulate_pieces};

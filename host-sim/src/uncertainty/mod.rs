@@ -58,7 +58,7 @@ pub struct SourceFacts {
     /// Unit of its magnitude.
     pub unit: &'static str,
     /// Number of its random stream, never reused: it keeps draws apart and old runs replayable.
-    pub stream_id: u32,
+    pub stream_id: u16,
     /// Magnitude unless configured.
     pub default_magnitude: f64,
     /// Least and greatest magnitude allowed.

@@ -114,25 +114,25 @@ pub struct NoiseKey {
     seed: u64,
     purpose: &'static str,
     index: u64,
-    part: u32,
+    part: u64,
 }
 
 impl NoiseKey {
     /// The noise of one look of a trial, looks counted from 0.
     #[must_use]
     pub const fn look(seed: u64, trial: u64, look: u32) -> Self {
-        Self { seed, purpose: "psi-look", index: trial, part: look }
+        Self { seed, purpose: "psi-look", index: trial, part: look as u64 }
     }
 
     /// The noise of one learned view, in one of the maps of a run.
     #[must_use]
-    pub const fn view(seed: u64, map_index: u64, node_index: u16, view_index: u16) -> Self {
-        // A match on two u16: no two views share a part.
-        Self { seed, purpose: "psi-view", index: map_index, part: (node_index as u32) << 16 | view_index as u32 }
+    pub const fn view(seed: u64, map_index: u64, node_index: u32, view_index: u16) -> Self {
+        Self { seed, purpose: "psi-view", index: map_index, part: (node_index as u64) << 16 | view_index as u64 }
     }
 
     fn stream(&self, facts: &SourceFacts) -> Stream {
-        Stream::new(self.seed, self.purpose, self.index, u64::from(self.part) << 32 | u64::from(facts.stream_id))
+        // A part has at most 48 bits, a stream's number 16, so that no two draws share a stream.
+        Stream::new(self.seed, self.purpose, self.index, self.part << 16 | u64::from(facts.stream_id))
     }
 }
 

@@ -50,6 +50,12 @@ impl<'a> ViewpointVisibility<'a> {
         self.eye
     }
 
+    /// The world's edges, world frame.
+    #[must_use]
+    pub const fn edges(&self) -> &'a [Segment3] {
+        self.edges
+    }
+
     /// How many edges the world has.
     #[must_use]
     pub const fn edge_count(&self) -> usize {
