@@ -1,1 +1,7 @@
-//! learning
+//! World learning: from what a stereo rig sees at the nodes to the bytes of a topological database.
+
+mod learn;
+mod node_views;
+
+pub use learn::{LearnedNode, learn, learn_nodes};
+pub use node_views::NodeViews;

@@ -1,0 +1,202 @@
+//! Learning a map: each view of each node perturbed, triangulated and merged into the node's one model.
+//!
+//! Paper, section 3.1: a node holds the 3-D stereo edge models of its views. Neighbouring views overlap, so from each
+//! view only those segments are kept whose midpoint bearing lies within half the view spacing of its axis; together the
+//! views then cover the whole turn once, and a node has one merged model in its own frame: origin at the node's
+//! position at camera height, axes parallel to the world's.
+
+use super::NodeViews;
+use super::node_views::view_heading;
+use crate::camera::{CameraPose, StereoObservation, triangulate_feature};
+use crate::uncertainty::{NoiseKey, Sources};
+use edgeloc::database::{self, NodeModel, WriteError};
+use edgeloc::geometry::{Point2, Point3, Segment3, StereoRig};
+use edgeloc::math;
+use rayon::prelude::*;
+
+/// What was learned at one node.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LearnedNode {
+    /// Where the left camera stood, world frame [m].
+    pub position: Point2,
+    /// The merged 3-D segments of all views, node frame.
+    pub segments: Vec<Segment3>,
+}
+
+/// Learns one map and writes it as a database; `map_index` selects the draw of the noise.
+///
+/// # Errors
+/// When the map doesn't fit the format, for instance without nodes or views.
+pub fn learn(
+    rig: &StereoRig,
+    nodes: &[NodeViews],
+    sources: &Sources,
+    seed: u64,
+    map_index: u64,
+) -> Result<Vec<u8>, WriteError> {
+    let learned = learn_nodes(rig, nodes, sources, seed, map_index);
+    let models: Vec<_> =
+        learned.iter().map(|node| NodeModel { position: node.position, segments: &node.segments }).collect();
+    let views_per_node = nodes.first().map_or(0, |node| node.views.len() as u16);
+    let mut bytes = vec![0; database::encoded_len(&models).ok_or(WriteError::TooLarge)?];
+    database::write(rig, views_per_node, &models, &mut bytes)?;
+    Ok(bytes)
+}
+
+/// Learns the model of every node, in order and in parallel; the same whatever the number of threads.
+#[must_use]
+pub fn learn_nodes(
+    rig: &StereoRig,
+    nodes: &[NodeViews],
+    sources: &Sources,
+    seed: u64,
+    map_index: u64,
+) -> Vec<LearnedNode> {
+    let learn_one = |(node_index, node): (usize, &NodeViews)| {
+        let key_of_view = |view_index| NoiseKey::view(seed, map_index, node_index as u32, view_index);
+        learn_node(rig, node, sources, key_of_view)
+    };
+    nodes.par_iter().enumerate().map(learn_one).collect()
+}
+
+fn learn_node(
+    rig: &StereoRig,
+    node: &NodeViews,
+    sources: &Sources,
+    key_of_view: impl Fn(u16) -> NoiseKey,
+) -> LearnedNode {
+    let view_count = node.views.len() as u16;
+    let half_spacing = core::f32::consts::PI / f32::from(view_count);
+    let mut segments = Vec::new();
+    let mut observation = StereoObservation { rig: *rig, features: Vec::new() };
+    for (view_index, clean) in (0..view_count).zip(&node.views) {
+        observation.clone_from(clean);
+        sources.apply(&mut observation, &key_of_view(view_index));
+        let node_from_camera = CameraPose::new(Point3::default(), view_heading(view_index, view_count));
+        let model = observation.features.iter().flat_map(|feature| triangulate_feature(rig, feature));
+        let own = model.filter(|segment| (-half_spacing..half_spacing).contains(&bearing(segment)));
+        segments.extend(own.map(|segment| node_from_camera.segment_from_camera(&segment)));
+    }
+    LearnedNode { position: node.position, segments }
+}
+
+/// Bearing of a segment's midpoint from the optical axis [rad], positive to the right.
+fn bearing(segment: &Segment3) -> f32 {
+    let midpoint = segment.start.lerp(segment.end, 0.5);
+    math::atan2(midpoint.x, midpoint.z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Stream;
+    use crate::uncertainty::EdgeDetectionLoss;
+    use crate::world::{Occluders, WireframeWorld};
+    use edgeloc::database::TopologicalDatabase;
+    use edgeloc::geometry::Polarity;
+
+    const RIG: StereoRig = StereoRig::reference();
+
+    /// Posts in a ring around the origin, 1 to 6 m away, with no surfaces; each post is one vertical edge.
+    fn posts() -> WireframeWorld {
+        let mut stream = Stream::new(5, "posts", 0, 0);
+        let mut edges = Vec::new();
+        for index in 0..120_u8 {
+            let mut draw = |low, high| stream.uniform(low, high) as f32;
+            let (sin, cos) = math::sin_cos((f32::from(index) * 3.0 + 0.3).to_radians());
+            let (distance_m, foot_m) = (draw(1.5, 6.0), draw(0.7, 1.0));
+            let (x, y) = (2.0 + cos * distance_m, -1.0 + sin * distance_m);
+            let polarity = if index % 2 == 0 { Polarity::LeftBrighter } else { Polarity::RightBrighter };
+            let (start, end) = (Point3::new(x, y, foot_m), Point3::new(x, y, foot_m + draw(0.2, 0.5)));
+            edges.push(Segment3 { start, end, polarity });
+        }
+        WireframeWorld { edges, ..WireframeWorld::default() }
+    }
+
+    fn views() -> Vec<NodeViews> {
+        let world = posts();
+        let occluders = Occluders::new(&world.surfaces);
+        let positions = [Point2::new(2.0, -1.0), Point2::new(2.3, -1.1)];
+        NodeViews::observe_all(&RIG, &world, &occluders, &positions, 12)
+    }
+
+    #[test]
+    fn without_noise_each_edge_is_learned_once_where_it_is() {
+        let world = posts();
+        for node in learn_nodes(&RIG, &views(), &Sources::none(), 1, 0) {
+            assert_eq!(node.segments.len(), world.edges.len());
+            for edge in &world.edges {
+                let in_node = |point: Point3| {
+                    Point3::new(point.x - node.position.x, point.y - node.position.y, point.z - RIG.camera_height_m)
+                };
+                let is_same = |segment: &&Segment3| {
+                    let ends = [(segment.start, in_node(edge.start)), (segment.end, in_node(edge.end))];
+                    ends.iter().all(|(found, true_end)| found.distance(*true_end) < 0.005)
+                };
+                let found = node.segments.iter().find(is_same).expect("every edge is in the model");
+                assert_eq!(found.polarity, edge.polarity);
+            }
+        }
+    }
+
+    #[test]
+    fn each_map_draws_its_own_noise_and_the_same_map_the_same() {
+        let (views, sources) = (views(), Sources::default());
+        let first = learn(&RIG, &views, &sources, 1, 0).expect("a map");
+        assert_eq!(first, learn(&RIG, &views, &sources, 1, 0).expect("a map"));
+        assert_ne!(first, learn(&RIG, &views, &sources, 1, 1).expect("a map"));
+        assert_ne!(first, learn(&RIG, &views, &sources, 2, 0).expect("a map"));
+    }
+
+    #[test]
+    fn one_thread_and_four_learn_the_same() {
+        let (views, sources) = (views(), Sources::default());
+        let learn_with = |thread_count| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(thread_count).build().expect("a pool");
+            pool.install(|| learn_nodes(&RIG, &views, &sources, 1, 0))
+        };
+        assert_eq!(learn_with(1), learn_with(4));
+    }
+
+    #[test]
+    fn two_nodes_with_the_same_view_draw_apart() {
+        let view = views().swap_remove(0);
+        let learned = learn_nodes(&RIG, &[view.clone(), view], &Sources::default(), 1, 0);
+        assert_ne!(learned[0].segments, learned[1].segments);
+    }
+
+    #[test]
+    fn gaps_in_the_images_break_the_model_into_more_and_shorter_segments() {
+        let sources = Sources { edge_detection_loss: EdgeDetectionLoss::default(), ..Sources::none() };
+        let total = |nodes: &[LearnedNode]| nodes[0].segments.iter().map(Segment3::length_m).sum::<f32>();
+        let (clean, broken) =
+            (learn_nodes(&RIG, &views(), &Sources::none(), 1, 0), learn_nodes(&RIG, &views(), &sources, 1, 0));
+        assert!(broken[0].segments.len() > clean[0].segments.len());
+        // A 3-D segment needs the edge in both images, which lose 11.25 % each on their own.
+        let kept_share = total(&broken) / total(&clean);
+        assert!((kept_share - 0.8875_f32.powi(2)).abs() < 0.03, "{kept_share}");
+    }
+
+    #[test]
+    fn the_bytes_hold_the_rig_the_views_and_every_segment() {
+        let (views, sources) = (views(), Sources::default());
+        let bytes = learn(&RIG, &views, &sources, 1, 0).expect("a map");
+        let database = TopologicalDatabase::open(&bytes).expect("what was just written");
+        let learned = learn_nodes(&RIG, &views, &sources, 1, 0);
+        assert_eq!((database.views_per_node(), *database.rig(), database.node_count()), (12, RIG, 2));
+        for (node, learned) in database.nodes().zip(&learned) {
+            assert!(node.position().distance(learned.position) < 1e-3);
+            assert_eq!(node.segments().len(), learned.segments.len());
+            for (stored, segment) in node.segments().zip(&learned.segments) {
+                // The format keeps an edge from whichever end makes its left side the brighter one.
+                let start = if stored.polarity == segment.polarity { segment.start } else { segment.end };
+                assert!(stored.start.distance(start) < 1e-3, "{stored:?} {segment:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_map_without_nodes_is_refused() {
+        assert_eq!(learn(&RIG, &[], &Sources::none(), 1, 0), Err(WriteError::Empty));
+    }
+}
