@@ -15,5 +15,6 @@ pub mod camera;
 pub mod learning;
 pub mod monte_carlo;
 pub mod random;
+pub mod scenario;
 pub mod uncertainty;
 pub mod world;

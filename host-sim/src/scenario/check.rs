@@ -1,0 +1,148 @@
+//! The legal range of every value of a scenario.
+
+use super::error::IllegalValue;
+use super::{LocalizerSettings, Scenario};
+use edgeloc::geometry::StereoRig;
+use std::fmt::Display;
+use std::ops::RangeInclusive;
+
+/// Longest name of a scenario or row, in bytes.
+const MAX_NAME_BYTES: usize = 100;
+
+impl Scenario {
+    /// Finds the first value outside its legal range.
+    ///
+    /// # Errors
+    /// The key, its value, the legal range and the remedy.
+    pub fn check(&self) -> Result<(), IllegalValue> {
+        self.check_name()?;
+        within("seed", self.seed, 0..=i64::MAX as u64, "TOML integers have 63 bits; choose a smaller seed")?;
+        within("trials", self.trials, 1..=1_000_000, "500 trials give rates to about 3 points")?;
+        within("trials_per_map", self.trials_per_map, 1..=1_000_000, "50 is the default")?;
+        within("near_radius_m", self.near_radius_m, 0.0..=10.0, "a near start lies within 0.3 m of a node by default")?;
+        within("learning.nodes", self.learning.nodes, 1..=4096, "the paper's office has 72")?;
+        within("learning.views", self.learning.views, 1..=360, "12 views, 30 degrees apart, cover the circle")?;
+        self.check_rig()?;
+        check_localizer(&self.localizer)?;
+        self.check_rows()
+    }
+
+    fn check_name(&self) -> Result<(), IllegalValue> {
+        let fits_a_file_name = !self.name.is_empty()
+            && self.name.len() <= MAX_NAME_BYTES
+            && !self.name.starts_with('.')
+            && self.name.bytes().all(|byte| byte.is_ascii_alphanumeric() || b"-_.".contains(&byte));
+        require(
+            fits_a_file_name,
+            "name",
+            &self.name,
+            "1 to 100 letters, digits, '-', '_' or '.', not '.' first",
+            || "it names the folder of the run; choose another name".to_owned(),
+        )
+    }
+
+    fn check_rig(&self) -> Result<StereoRig, IllegalValue> {
+        self.rig.stereo_rig().map_err(|reason| IllegalValue {
+            key: "rig".to_owned(),
+            value: format!("{:?}", self.rig),
+            legal: reason,
+            remedy: "the bundled scenario paper-office states each range: `edgeloc run --print-config`".to_owned(),
+        })
+    }
+
+    fn check_rows(&self) -> Result<(), IllegalValue> {
+        let count = self.rows.len();
+        require((1..=100).contains(&count), "rows", &format!("{count} rows"), "1 to 100 rows", || {
+            "add a [[rows]] table with name, start and polarity".to_owned()
+        })?;
+        for (index, row) in self.rows.iter().enumerate() {
+            let key = format!("rows.{index}.name");
+            let readable =
+                !row.name.is_empty() && row.name.len() <= MAX_NAME_BYTES && !row.name.chars().any(char::is_control);
+            require(readable, &key, &row.name, "1 to 100 bytes without control characters", || {
+                "choose a short, readable name".to_owned()
+            })?;
+            let is_new = self.rows[..index].iter().all(|other| other.name != row.name);
+            require(is_new, &key, &row.name, "a name that no other row has", || {
+                "rows are told apart by name in trials.csv; rename one of the two".to_owned()
+            })?;
+        }
+        Ok(())
+    }
+}
+
+fn check_localizer(localizer: &LocalizerSettings) -> Result<(), IllegalValue> {
+    let LocalizerSettings { pgh, .. } = localizer;
+    within("localizer.score_margin", localizer.score_margin, 0.0..=1000.0, "the paper's B_th is 0.1")?;
+    within("localizer.turn_deg", localizer.turn_deg, -360.0..=360.0, "the paper turns by 30 degrees")?;
+    within("localizer.max_looks", localizer.max_looks, 1..=1000, "12 looks of 30 degrees close the circle")?;
+    within("localizer.min_length_px", localizer.min_length_px, 0.0..=2048.0, "12 px is the default")?;
+    within("localizer.horizontal_exclusion_deg", localizer.horizontal_exclusion_deg, 0.0..=89.0, "5 is the default")?;
+    within("localizer.max_segments", localizer.max_segments, 1..=1024, "150 is the default")?;
+    within("localizer.pgh.distance_bins", pgh.distance_bins, 1..=256, "the paper's best is 15")?;
+    within("localizer.pgh.angle_bins", pgh.angle_bins, 1..=256, "the paper's best is 32")?;
+    within("localizer.pgh.max_distance_px", pgh.max_distance_px, 1.0..=2048.0, "200 to 600 hardly matter")?;
+    let covered_px = pgh.max_distance_px * if pgh.signed { 2.0 } else { 1.0 };
+    let bin_px = covered_px / f64::from(pgh.distance_bins);
+    require(
+        (0.25..=1024.0).contains(&bin_px),
+        "localizer.pgh.distance_bins",
+        &format!("{} (bins of {bin_px} px)", pgh.distance_bins),
+        "bins of 0.25 to 1024 px",
+        || "change distance_bins or max_distance_px".to_owned(),
+    )
+}
+
+/// Refuses `value` outside `legal`; NaN is always outside.
+fn within<T: PartialOrd + Display + Copy>(
+    key: &str,
+    value: T,
+    legal: RangeInclusive<T>,
+    remedy: &str,
+) -> Result<(), IllegalValue> {
+    let range = format!("{} to {}", legal.start(), legal.end());
+    require(legal.contains(&value), key, &value, &range, || format!("choose a value in the range; {remedy}"))
+}
+
+fn require(
+    is_legal: bool,
+    key: &str,
+    value: &dyn Display,
+    legal: &str,
+    remedy: impl FnOnce() -> String,
+) -> Result<(), IllegalValue> {
+    if is_legal {
+        return Ok(());
+    }
+    Err(IllegalValue { key: key.to_owned(), value: value.to_string(), legal: legal.to_owned(), remedy: remedy() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(change: impl FnOnce(&mut Scenario)) -> String {
+        let mut scenario = Scenario::default();
+        change(&mut scenario);
+        scenario.check().expect_err("an illegal value").key
+    }
+
+    #[test]
+    fn the_default_is_legal() {
+        assert_eq!(Scenario::default().check(), Ok(()));
+    }
+
+    #[test]
+    fn an_illegal_value_is_named() {
+        assert_eq!(refused(|s| s.trials = 0), "trials");
+        assert_eq!(refused(|s| s.seed = u64::MAX), "seed");
+        assert_eq!(refused(|s| s.near_radius_m = f64::NAN), "near_radius_m");
+        assert_eq!(refused(|s| s.name = "../up".to_owned()), "name");
+        assert_eq!(refused(|s| s.rig.baseline_m = 0.0), "rig");
+        assert_eq!(refused(|s| s.localizer.turn_deg = 361.0), "localizer.turn_deg");
+        assert_eq!(refused(|s| s.localizer.pgh.angle_bins = 257), "localizer.pgh.angle_bins");
+        assert_eq!(refused(|s| s.localizer.pgh.max_distance_px = 1.0), "localizer.pgh.distance_bins");
+        assert_eq!(refused(|s| s.rows.clear()), "rows");
+        assert_eq!(refused(|s| s.rows[1].name = s.rows[0].name.clone()), "rows.1.name");
+    }
+}

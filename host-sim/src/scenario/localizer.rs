@@ -1,0 +1,107 @@
+//! The localiser as a scenario states it; by default the paper's.
+
+use edgeloc::geometry::Angle;
+use edgeloc::localize::LocalizerConfig;
+use edgeloc::pgh::{DistanceKind, PghShape};
+use serde::{Deserialize, Serialize};
+
+/// The localiser's settings.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct LocalizerSettings {
+    /// Which localiser.
+    pub kind: LocalizerKind,
+    /// B_th: how far a node's score may lie below the leader's at the first look (paper, section 3.3).
+    pub score_margin: f64,
+    /// Turn before the next look [degrees], counter-clockwise.
+    pub turn_deg: f64,
+    /// Looks after which the leading node is the answer.
+    pub max_looks: u16,
+    /// Shorter image segments are dropped [px].
+    pub min_length_px: f64,
+    /// Image segments this close to the horizontal are dropped on both sides [degrees]: stereo models lack them.
+    pub horizontal_exclusion_deg: f64,
+    /// The longest segments of a scene that enter the matching.
+    pub max_segments: u16,
+    /// The pairwise geometric histograms.
+    pub pgh: PghSettings,
+}
+
+impl Default for LocalizerSettings {
+    fn default() -> Self {
+        Self {
+            kind: LocalizerKind::Paper,
+            score_margin: 0.1,
+            turn_deg: 30.0,
+            max_looks: 12,
+            min_length_px: 12.0,
+            horizontal_exclusion_deg: 5.0,
+            max_segments: 150,
+            pgh: PghSettings::default(),
+        }
+    }
+}
+
+impl LocalizerSettings {
+    /// The localiser's parameters in a row with or without polarity.
+    #[must_use]
+    pub fn localizer_config(&self, polarity: bool) -> LocalizerConfig {
+        let PghSettings { distance_bins, angle_bins, max_distance_px, signed, angle_interpolation } = self.pgh;
+        LocalizerConfig {
+            shape: PghShape {
+                distance_bins,
+                angle_bins,
+                max_distance_px: max_distance_px as f32,
+                distance: if signed { DistanceKind::Signed } else { DistanceKind::Unsigned },
+                uses_polarity: polarity,
+                interpolates_angle: angle_interpolation,
+            },
+            score_margin: self.score_margin as f32,
+            turn: Angle::from_degrees(self.turn_deg as f32),
+            max_looks: self.max_looks,
+            min_length_px: self.min_length_px as f32,
+            horizontal_exclusion: Angle::from_degrees(self.horizontal_exclusion_deg as f32),
+            max_segments: self.max_segments,
+        }
+    }
+}
+
+/// Which localiser a run uses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LocalizerKind {
+    /// The paper's: histogram scores summed over looks, candidates within a shrinking margin of the leader.
+    Paper,
+}
+
+/// Size and reading of the pairwise geometric histograms (paper, section 3.1).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct PghSettings {
+    /// Bins of the perpendicular distance; 15 in the paper.
+    pub distance_bins: u16,
+    /// Bins of the relative angle; 32 in the paper.
+    pub angle_bins: u16,
+    /// Greatest perpendicular distance counted [px].
+    pub max_distance_px: f64,
+    /// Whether the two sides of the reference line count apart.
+    pub signed: bool,
+    /// Whether an angle is shared linearly by the two nearest bins.
+    pub angle_interpolation: bool,
+}
+
+impl Default for PghSettings {
+    fn default() -> Self {
+        Self { distance_bins: 15, angle_bins: 32, max_distance_px: 400.0, signed: true, angle_interpolation: true }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_default_is_the_published_localiser() {
+        assert_eq!(LocalizerSettings::default().localizer_config(false), LocalizerConfig::paper());
+    }
+}

@@ -1,0 +1,121 @@
+//! Everything that defines a run: world, rig, learning, localiser and the rows of trials.
+//!
+//! A scenario is a TOML file, laid over the values of the bundled preset `paper-office` and under the
+//! `--set key=value` settings of the command line. It is checked once ([`Scenario::check`]) and written beside the
+//! results, so that a run can be repeated from what it left behind. Every field carries its unit in its name; the legal
+//! ranges stand in [`Scenario::check`] and in the bundled `paper-office.toml`.
+
+mod check;
+mod error;
+mod load;
+mod localizer;
+mod preset;
+mod rig;
+mod world_choice;
+
+pub use error::{IllegalValue, ScenarioError};
+pub use localizer::{LocalizerKind, LocalizerSettings, PghSettings};
+pub use preset::{PRESETS, Preset};
+pub use rig::RigSettings;
+pub use world_choice::WorldChoice;
+
+use serde::{Deserialize, Serialize};
+
+/// Everything that defines a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Scenario {
+    /// Name, fit for a folder.
+    pub name: String,
+    /// Seed of all random draws of the run; the same seed gives the same `trials.csv`.
+    pub seed: u64,
+    /// Trials of each row.
+    pub trials: u32,
+    /// Trials that share one draw of the map's noise; then the world is learned anew.
+    pub trials_per_map: u32,
+    /// Greatest distance from a node of a start of [`Start::Near`] [m].
+    pub near_radius_m: f64,
+    /// The world.
+    pub world: WorldChoice,
+    /// The stereo rig that learns and localises.
+    pub rig: RigSettings,
+    /// How the world is learned.
+    pub learning: LearningSettings,
+    /// The localiser.
+    pub localizer: LocalizerSettings,
+    /// The rows of the run: the settings that are compared.
+    pub rows: Vec<Row>,
+}
+
+impl Default for Scenario {
+    /// The paper's setting in the bundled office, the preset `paper-office`.
+    fn default() -> Self {
+        let row = |name: &str, start, polarity| Row { name: name.to_owned(), start, polarity };
+        Self {
+            name: "paper-office".to_owned(),
+            seed: 1,
+            trials: 500,
+            trials_per_map: 50,
+            near_radius_m: 0.3,
+            world: WorldChoice::Office { seed: 1 },
+            rig: RigSettings::default(),
+            learning: LearningSettings::default(),
+            localizer: LocalizerSettings::default(),
+            rows: vec![
+                row("near, polarity", Start::Near, true),
+                row("near, no polarity", Start::Near, false),
+                row("anywhere, polarity", Start::Anywhere, true),
+                row("anywhere, no polarity", Start::Anywhere, false),
+            ],
+        }
+    }
+}
+
+impl Scenario {
+    /// The row called `name`, or the first row when no name is given.
+    #[must_use]
+    pub fn row(&self, name: Option<&str>) -> Option<&Row> {
+        match name {
+            Some(name) => self.rows.iter().find(|row| row.name == name),
+            None => self.rows.first(),
+        }
+    }
+}
+
+/// How the world is learned.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct LearningSettings {
+    /// Nodes placed in the free space; 72 in the paper.
+    pub nodes: u16,
+    /// Views learned at each node, evenly around the circle; 12 in the paper.
+    pub views: u16,
+}
+
+impl Default for LearningSettings {
+    fn default() -> Self {
+        Self { nodes: 72, views: 12 }
+    }
+}
+
+/// One setting of a run: trials of different rows share robot poses and noise wherever their settings agree.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Row {
+    /// Name, unique in the scenario.
+    pub name: String,
+    /// Where the robot is put down.
+    pub start: Start,
+    /// Whether the histograms tell which side of an edge is brighter.
+    pub polarity: bool,
+}
+
+/// Where the robot of a trial is put down; its heading is uniform in either case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Start {
+    /// Within `near_radius_m` of a node, in free space.
+    Near,
+    /// Uniform in free space.
+    Anywhere,
+}

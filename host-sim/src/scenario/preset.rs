@@ -1,0 +1,34 @@
+//! The bundled scenarios: `paper-office`, the paper's setting and the base of every other scenario, and quick ones.
+
+/// A bundled scenario.
+#[derive(Debug, Clone, Copy)]
+pub struct Preset {
+    /// Name, as given on the command line.
+    pub name: &'static str,
+    /// What it is for.
+    pub summary: &'static str,
+    /// Its TOML text.
+    pub text: &'static str,
+}
+
+/// The bundled scenarios.
+pub const PRESETS: &[Preset] = &[
+    Preset {
+        name: "paper-office",
+        summary: "the paper's setting in the generated office, 500 trials each of four rows",
+        text: include_str!("../../scenarios/paper-office.toml"),
+    },
+    Preset {
+        name: "smoke",
+        summary: "the same on a small scale, a few seconds: does everything work?",
+        text: include_str!("../../scenarios/smoke.toml"),
+    },
+];
+
+impl Preset {
+    /// The preset called `name`.
+    #[must_use]
+    pub fn find(name: &str) -> Option<&'static Self> {
+        PRESETS.iter().find(|preset| preset.name == name)
+    }
+}
