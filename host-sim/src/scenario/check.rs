@@ -24,6 +24,7 @@ impl Scenario {
         within("learning.views", self.learning.views, 1..=360, "12 views, 30 degrees apart, cover the circle")?;
         self.check_rig()?;
         check_localizer(&self.localizer)?;
+        self.check_uncertainty()?;
         self.check_rows()
     }
 
@@ -47,6 +48,18 @@ impl Scenario {
             value: format!("{:?}", self.rig),
             legal: reason,
             remedy: "the bundled scenario paper-office states each range: `edgeloc run --print-config`".to_owned(),
+        })
+    }
+
+    fn check_uncertainty(&self) -> Result<(), IllegalValue> {
+        let Err(error) = self.uncertainty.clone().checked() else { return Ok(()) };
+        let (low, high) = error.facts.legal_range;
+        let key = format!("uncertainty.{}.magnitude", error.facts.key);
+        require(false, &key, &error.magnitude, &format!("{low} to {high} {}", error.facts.unit), || {
+            format!(
+                "the default is {}; to switch the source off set its enabled = false",
+                error.facts.default_magnitude
+            )
         })
     }
 
@@ -142,6 +155,8 @@ mod tests {
         assert_eq!(refused(|s| s.localizer.turn_deg = 361.0), "localizer.turn_deg");
         assert_eq!(refused(|s| s.localizer.pgh.angle_bins = 257), "localizer.pgh.angle_bins");
         assert_eq!(refused(|s| s.localizer.pgh.max_distance_px = 1.0), "localizer.pgh.distance_bins");
+        let key = refused(|s| s.uncertainty.stereo_match.magnitude = 0.2);
+        assert_eq!(key, "uncertainty.stereo_match.magnitude");
         assert_eq!(refused(|s| s.rows.clear()), "rows");
         assert_eq!(refused(|s| s.rows[1].name = s.rows[0].name.clone()), "rows.1.name");
     }

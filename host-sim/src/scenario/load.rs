@@ -239,6 +239,8 @@ mod tests {
             ("", &["trials"], "no '='"),
             ("", &["rows.9.polarity=true"], "no \"9\""),
             ("[learning]\nnodes = 0\n", &[], "learning.nodes = 0 is not legal; legal: 1 to 4096"),
+            ("[uncertainty.stereo_match]\nmagnitude = 2\n", &[], "stereo_match.magnitude = 2 is not legal"),
+            ("", &["uncertainty.edge_detection_loss.magnitude=1"], "takes 0 to 0.3125"),
             ("[world]\nkind = \"office\"\nfile = \"x\"\n", &[], "keep one of the two"),
         ] {
             let message = load_text(text, settings).expect_err("illegal").to_string();

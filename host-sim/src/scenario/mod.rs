@@ -19,6 +19,7 @@ pub use preset::{PRESETS, Preset};
 pub use rig::RigSettings;
 pub use world_choice::WorldChoice;
 
+use crate::uncertainty::Sources;
 use serde::{Deserialize, Serialize};
 
 /// Everything that defines a run.
@@ -43,6 +44,8 @@ pub struct Scenario {
     pub learning: LearningSettings,
     /// The localiser.
     pub localizer: LocalizerSettings,
+    /// The uncertainty sources, in learning and in trials alike.
+    pub uncertainty: Sources,
     /// The rows of the run: the settings that are compared.
     pub rows: Vec<Row>,
 }
@@ -61,6 +64,7 @@ impl Default for Scenario {
             rig: RigSettings::default(),
             learning: LearningSettings::default(),
             localizer: LocalizerSettings::default(),
+            uncertainty: Sources::default(),
             rows: vec![
                 row("near, polarity", Start::Near, true),
                 row("near, no polarity", Start::Near, false),
