@@ -3,6 +3,8 @@
 //! World frame: metres, z up, the floor a robot drives on at z = 0.
 
 mod occlusion;
+pub mod office;
+mod template;
 mod visibility;
 mod wireframe;
 
