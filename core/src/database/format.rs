@@ -7,7 +7,7 @@
 //! | 0 | 8 bytes | magic `"edgemap\n"` |
 //! | 8 | u16 | version, 1 |
 //! | 10 | u16 | views learned at each node, at least 1 |
-//! | 12 | u32 | CRC-32 (ISO-HDLC) of everything from offset 16 to the end |
+//! | 12 | u32 | CRC-32 (ISO-HDLC) of the whole database but these four bytes |
 //! | 16 | u32 | length of the whole database; bytes after it are ignored |
 //! | 20 | u32 | number of nodes N, at least 1 |
 //! | 24 | u32 | number of segments S of all nodes |
@@ -35,6 +35,7 @@
 //!
 //! A reader refuses any other version; a writer of a changed layout raises it.
 
+use core::ops::Range;
 use zerocopy::little_endian::{F32, I16, I32, U16, U32};
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
 
@@ -42,8 +43,8 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
 pub const MAGIC: [u8; 8] = *b"edgemap\n";
 /// The version this crate reads and writes.
 pub const VERSION: u16 = 1;
-/// Where the part guarded by the CRC begins.
-pub const CRC_START: usize = 16;
+/// Where the checksum itself lies.
+pub const CRC_BYTES: Range<usize> = 12..16;
 /// Length of the header.
 pub const HEADER_LEN: usize = size_of::<Header>();
 /// Length of a node.
@@ -51,11 +52,15 @@ pub const NODE_LEN: usize = size_of::<NodeEntry>();
 /// Length of a segment.
 pub const SEGMENT_LEN: usize = size_of::<SegmentEntry>();
 
-/// The checksum of the part of a database that it guards.
+/// The checksum of a database: of all its bytes but [`CRC_BYTES`].
 #[must_use]
-pub fn checksum(guarded: &[u8]) -> u32 {
+pub fn checksum(database: &[u8]) -> u32 {
     const CRC: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
-    CRC.checksum(guarded)
+    let mut digest = CRC.digest();
+    for guarded in [database.get(..CRC_BYTES.start), database.get(CRC_BYTES.end..)].into_iter().flatten() {
+        digest.update(guarded);
+    }
+    digest.finalize()
 }
 
 #[derive(Debug, Clone, Copy, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]

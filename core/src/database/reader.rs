@@ -47,7 +47,7 @@ impl<'a> TopologicalDatabase<'a> {
             return Err(OpenError::Counts);
         }
         let bytes = bytes.get(..length).ok_or(OpenError::Truncated { length: bytes.len(), needed: length })?;
-        if format::checksum(&bytes[format::CRC_START..]) != header.crc.get() {
+        if format::checksum(bytes) != header.crc.get() {
             return Err(OpenError::Checksum);
         }
         if node_count == 0 || header.views_per_node.get() == 0 {

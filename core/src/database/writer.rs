@@ -61,7 +61,7 @@ pub fn write(
 
     let mut header = header_of(rig, views_per_node, [length, nodes.len(), first_segment as usize]);
     header_bytes.copy_from_slice(header.as_bytes());
-    header.crc = format::checksum(&out[format::CRC_START..]).into();
+    header.crc = format::checksum(out).into();
     out[..HEADER_LEN].copy_from_slice(header.as_bytes());
     Ok(length)
 }
