@@ -1,5 +1,9 @@
 //! Whole-system tests of edgeloc: naive oracles, golden vectors and the real data they run on.
 
+pub mod oracle;
+pub mod strategies;
+pub mod tiny_worlds;
+
 use std::path::PathBuf;
 
 /// The folder `name` of the real data, or `None` with a loud line on standard error when it is absent.
