@@ -1,0 +1,230 @@
+//! The byte format of the database against truncation, damage and hostile hands.
+
+use edgeloc::database::{NodeId, NodeModel, OpenError, TopologicalDatabase, WriteError, encoded_len, format, write};
+use edgeloc::geometry::{Angle, Heading, Point2, Point3, Polarity, Scene, Segment2, Segment3, StereoRig};
+use edgeloc::localize::{HeadingPrior, Localizer, LocalizerConfig, Look};
+use edgeloc_tests::strategies::fixed_cases;
+use edgeloc_tests::tiny_worlds::{
+    TinyNode, all_seeing_node, all_seeing_scene, database_bytes, furnished_room, random_positions,
+};
+use proptest::collection::vec;
+use proptest::prelude::*;
+
+const RIG: StereoRig = StereoRig::reference();
+
+fn tiny_nodes(count: usize) -> Vec<TinyNode> {
+    let world = furnished_room();
+    random_positions(3, count).into_iter().map(|position| all_seeing_node(&world, &RIG, position)).collect()
+}
+
+/// Makes the checksum right again, as someone who damages on purpose would.
+fn with_checksum(mut bytes: Vec<u8>) -> Vec<u8> {
+    let length = u32::from_le_bytes(bytes[16..20].try_into().expect("four bytes")) as usize;
+    let crc = format::checksum(&bytes[..length.clamp(format::HEADER_LEN, bytes.len())]);
+    bytes[format::CRC_BYTES].copy_from_slice(&crc.to_le_bytes());
+    bytes
+}
+
+/// Opens, reads everything there is and takes a look around: whatever the answers, it must come to an end.
+fn exercise(bytes: &[u8], scene: &[Segment2]) -> Result<(), OpenError> {
+    let database = TopologicalDatabase::open(bytes)?;
+    let read: usize = database.nodes().map(|node| node.segments().filter(|s| s.start.is_finite()).count()).sum();
+    assert_eq!(read, database.segment_count());
+    assert!(database.nodes().all(|node| node.position().is_finite()));
+    assert!(database.node(NodeId(database.node_count() as u32)).is_none());
+
+    let config = LocalizerConfig::paper();
+    let mut memory = vec![0; Localizer::memory_len(&config, database.node_count())];
+    let mut localizer = Localizer::new(database, &config, &mut memory).expect("memory of the length asked for");
+    let heading = Heading::new(Angle::from_degrees(40.0)).map(HeadingPrior::exact);
+    let look = Look { heading, motion_since_last: None, scene: Scene::new(scene) };
+    localizer.observe(&look).expect("a heading is given");
+    Ok(())
+}
+
+#[test]
+fn every_truncation_is_refused() {
+    let bytes = database_bytes(&RIG, &tiny_nodes(3));
+    for length in 0..bytes.len() {
+        let error = TopologicalDatabase::open(&bytes[..length]).expect_err("bytes are missing");
+        assert!(matches!(error, OpenError::Truncated { length: found, needed } if found == length && needed > length));
+    }
+}
+
+#[test]
+fn every_flipped_bit_is_refused() {
+    let bytes = database_bytes(&RIG, &tiny_nodes(2));
+    for position in 0..bytes.len() {
+        for bit in 0..8 {
+            let mut damaged = bytes.clone();
+            damaged[position] ^= 1 << bit;
+            assert!(TopologicalDatabase::open(&damaged).is_err(), "bit {bit} of byte {position} was flipped unnoticed");
+        }
+    }
+}
+
+#[test]
+fn bytes_after_the_end_are_ignored() {
+    let bytes = database_bytes(&RIG, &tiny_nodes(2));
+    let mut longer = bytes.clone();
+    longer.extend([0xff; 32]);
+    assert_eq!(
+        TopologicalDatabase::open(&longer).map(|database| database.segment_count()).ok(),
+        TopologicalDatabase::open(&bytes).map(|database| database.segment_count()).ok()
+    );
+}
+
+#[test]
+fn another_file_and_another_version_are_named_as_such() {
+    let bytes = database_bytes(&RIG, &tiny_nodes(2));
+    let mut other = bytes.clone();
+    other[0] = b'E';
+    assert_eq!(TopologicalDatabase::open(&other).expect_err("magic"), OpenError::NotADatabase);
+    let mut newer = bytes;
+    newer[8..10].copy_from_slice(&2_u16.to_le_bytes());
+    assert_eq!(TopologicalDatabase::open(&with_checksum(newer)).expect_err("version"), OpenError::Version { found: 2 });
+}
+
+#[test]
+fn absurd_counts_are_refused_even_with_a_right_checksum() {
+    let bytes = database_bytes(&RIG, &tiny_nodes(2));
+    for offset in [16, 20, 24] {
+        for value in [0_u32, 1, 3, 1000, 0x0fff_ffff, u32::MAX - 1, u32::MAX] {
+            let mut absurd = bytes.clone();
+            absurd[offset..offset + 4].copy_from_slice(&value.to_le_bytes());
+            let error = TopologicalDatabase::open(&with_checksum(absurd)).expect_err("a count contradicts the others");
+            assert!(matches!(error, OpenError::Counts | OpenError::Truncated { .. } | OpenError::Empty), "{error}");
+        }
+    }
+}
+
+#[test]
+fn counts_that_agree_with_each_other_but_not_with_the_bytes_are_a_truncation() {
+    let mut bytes = database_bytes(&RIG, &tiny_nodes(2));
+    let (nodes, segments) = (100_000_000_u32, 100_000_000_u32);
+    let length = format::HEADER_LEN as u64
+        + u64::from(nodes) * format::NODE_LEN as u64
+        + u64::from(segments) * format::SEGMENT_LEN as u64;
+    for (offset, value) in [(16, length as u32), (20, nodes), (24, segments)] {
+        bytes[offset..offset + 4].copy_from_slice(&value.to_le_bytes());
+    }
+    let error = TopologicalDatabase::open(&with_checksum(bytes)).expect_err("bytes are missing");
+    assert!(matches!(error, OpenError::Truncated { needed, .. } if needed as u64 == length), "{error}");
+}
+
+#[test]
+fn rigs_that_make_no_sense_are_refused_on_both_sides() {
+    let bytes = database_bytes(&RIG, &tiny_nodes(1));
+    for offset in (32..64).step_by(4) {
+        for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1000.0, 1.0e30] {
+            let mut hostile = bytes.clone();
+            hostile[offset..offset + 4].copy_from_slice(&value.to_le_bytes());
+            let error = TopologicalDatabase::open(&with_checksum(hostile)).expect_err("no such rig");
+            assert!(matches!(error, OpenError::Camera(_) | OpenError::Rig(_)), "{value} at {offset}: {error}");
+        }
+    }
+    let nodes = [NodeModel { position: Point2::default(), segments: &[] }];
+    let spoil: [fn(&mut StereoRig); 5] = [
+        |rig| rig.baseline_m = f32::NAN,
+        |rig| rig.camera_height_m = f32::INFINITY,
+        |rig| rig.near_limit_m = 0.0,
+        |rig| rig.nearest_model_m = f32::NAN,
+        |rig| rig.farthest_model_m = f32::NAN,
+    ];
+    for spoil in spoil {
+        let mut rig = RIG;
+        spoil(&mut rig);
+        assert!(matches!(write(&rig, 12, &nodes, &mut [0; 128]), Err(WriteError::Rig(_))), "{rig:?} was written");
+    }
+}
+
+#[test]
+fn any_flipped_byte_under_a_right_checksum_is_survived() {
+    let world = furnished_room();
+    let bytes = database_bytes(&RIG, &tiny_nodes(2));
+    let heading = Heading::new(Angle::from_degrees(40.0)).expect("finite");
+    let scene = all_seeing_scene(&world, &RIG, Point2::new(2.0, 2.0), heading);
+    let mut opened = 0;
+    for position in 0..bytes.len() {
+        for flip in [0x01, 0x80, 0xff] {
+            let mut hostile = bytes.clone();
+            hostile[position] ^= flip;
+            opened += usize::from(exercise(&with_checksum(hostile), &scene).is_ok());
+        }
+    }
+    assert!(opened > bytes.len(), "most flips change a number only: {opened} of {}", 3 * bytes.len());
+}
+
+fn coordinate() -> impl Strategy<Value = f32> {
+    prop_oneof![8 => -32.767..32.767_f32, 1 => Just(32.767), 1 => Just(-32.767), 1 => Just(0.0)]
+}
+
+fn segment3() -> impl Strategy<Value = Segment3> {
+    let point = || (coordinate(), coordinate(), coordinate()).prop_map(|(x, y, z)| Point3::new(x, y, z));
+    (point(), point(), edgeloc_tests::strategies::polarity()).prop_map(|(start, end, polarity)| Segment3 {
+        start,
+        end,
+        polarity,
+    })
+}
+
+fn node() -> impl Strategy<Value = TinyNode> {
+    let position = (-1.0e3..1.0e3_f32, -1.0e3..1.0e3_f32).prop_map(|(x, y)| Point2::new(x, y));
+    (position, vec(segment3(), 0..20)).prop_map(|(position, segments)| TinyNode { position, segments })
+}
+
+proptest! {
+    #![proptest_config(fixed_cases(200))]
+
+    #[test]
+    fn what_is_written_is_read_to_the_millimetre(nodes in vec(node(), 1..8)) {
+        let bytes = database_bytes(&RIG, &nodes);
+        let database = TopologicalDatabase::open(&bytes).expect("just written");
+        prop_assert_eq!(database.node_count(), nodes.len());
+        prop_assert_eq!(database.rig(), &RIG);
+        for (written, read) in nodes.iter().zip(database.nodes()) {
+            prop_assert!(written.position.distance(read.position()) < 1.0e-3);
+            prop_assert_eq!(read.segments().len(), written.segments.len());
+            for (written, read) in written.segments.iter().zip(read.segments()) {
+                // The format keeps polarity as the order of the end points.
+                let (start, end) = if written.polarity == read.polarity {
+                    (written.start, written.end)
+                } else {
+                    (written.end, written.start)
+                };
+                prop_assert!(start.distance(read.start) < 1.0e-3 && end.distance(read.end) < 1.0e-3);
+            }
+        }
+    }
+
+    #[test]
+    fn random_bytes_are_refused(bytes in vec(any::<u8>(), 0..400)) {
+        prop_assert!(TopologicalDatabase::open(&bytes).is_err());
+    }
+
+    #[test]
+    fn random_tables_under_a_right_header_are_survived(tables in vec(any::<u8>(), 16 + 12..400)) {
+        let segments: Vec<Segment3> = vec![Segment3 {
+            start: Point3::default(),
+            end: Point3::new(1.0, 1.0, 1.0),
+            polarity: Polarity::LeftBrighter,
+        }; (tables.len() - 16) / 12];
+        let mut bytes = database_bytes(&RIG, &[TinyNode { position: Point2::default(), segments }]);
+        let end = bytes.len();
+        // Everything but the node's own counts.
+        bytes[64..72].copy_from_slice(&tables[..8]);
+        bytes[80..end].copy_from_slice(&tables[16..16 + end - 80]);
+        prop_assert!(exercise(&with_checksum(bytes), &[]).is_ok());
+    }
+
+    #[test]
+    fn the_length_is_known_before_writing(nodes in vec(node(), 1..4)) {
+        let models: Vec<NodeModel<'_>> =
+            nodes.iter().map(|node| NodeModel { position: node.position, segments: &node.segments }).collect();
+        let needed = encoded_len(&models).expect("a few nodes");
+        let mut exact = vec![0; needed];
+        prop_assert_eq!(write(&RIG, 12, &models, &mut exact), Ok(needed));
+        let error = write(&RIG, 12, &models, &mut exact[1..]).expect_err("one byte short");
+        prop_assert_eq!(error, WriteError::OutputTooShort { capacity: needed - 1, needed });
+    }
+}
