@@ -12,7 +12,7 @@ use edgeloc_sim::world::{Surfaces, WireframeWorld};
 pub const ROOM_SIZE_M: [f32; 3] = [8.0, 6.0, 2.5];
 
 /// A node as a test makes it by hand.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct TinyNode {
     /// Position in the world frame [m].
     pub position: Point2,
