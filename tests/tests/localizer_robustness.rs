@@ -127,7 +127,7 @@ proptest! {
     #[test]
     fn headings_are_finite_or_none(degrees in any::<f32>()) {
         let heading = Heading::new(Angle::from_radians(degrees));
-        prop_assert!(heading.is_none_or(|heading| heading.angle().radians().abs() <= 3.142));
+        prop_assert!(heading.is_none_or(|heading| heading.angle().radians().abs() <= std::f32::consts::PI + 1.0e-5));
     }
 }
 
@@ -138,8 +138,7 @@ fn two_thousand_identical_or_parallel_or_crossing_segments_are_survived() {
     let identical = vec![segment((320.0, 10.0), (320.0, 470.0)); 2000];
     let parallel: Vec<_> =
         (0..2000).map(|i| segment((i as f32 - 1000.0, -limit), (i as f32 - 1000.0, limit))).collect();
-    let diagonals =
-        vec![segment((-limit, -limit), (limit, limit)), segment((-limit, limit), (limit, -limit))].repeat(1000);
+    let diagonals = [segment((-limit, -limit), (limit, limit)), segment((-limit, limit), (limit, -limit))].repeat(1000);
     for scene in [&identical, &parallel, &diagonals] {
         for uses_polarity in [false, true] {
             for distance in [DistanceKind::Signed, DistanceKind::Unsigned] {
@@ -219,6 +218,23 @@ fn a_robot_that_sees_nothing_is_told_so_and_may_start_again() {
         let decision = localizer.observe(&look(&[], 60.0)).expect("a heading is given");
         assert_eq!(decision, Decision::Unknown { reason: UnknownReason::SceneTooPoor });
     }
+}
+
+#[test]
+fn a_blank_first_look_does_not_favor_the_first_node() {
+    let world = furnished_room();
+    let bytes = furnished_map(4);
+    let position = random_positions(11, 4)[2];
+    let heading = Heading::new(Angle::from_degrees(60.0)).expect("finite");
+    let scene = all_seeing_scene(&world, &RIG, position, heading);
+    let config = LocalizerConfig { score_margin: 0.0, ..LocalizerConfig::paper() };
+    let database = TopologicalDatabase::open(&bytes).expect("just written");
+    let mut memory = vec![0; Localizer::memory_len(&config, 4)];
+    let mut localizer = Localizer::new(database, &config, &mut memory).expect("memory of the length asked for");
+    let blank = localizer.observe(&look(&[], 30.0)).expect("a heading is given");
+    assert_eq!(blank, Decision::LookAgain { turn: config.turn });
+    let decision = localizer.observe(&look(&scene, 60.0)).expect("a heading is given");
+    assert!(matches!(decision, Decision::Localized(localized) if localized.node.0 == 2), "{decision:?}");
 }
 
 #[test]

@@ -94,8 +94,13 @@ impl<'m> CandidateSet<'m> {
     }
 
     /// Keeps the leading node and the candidates scoring more than `B_max - B_th / i`.
+    ///
+    /// As long as no node has scored there is no leader to fall behind, and all stay whatever the margin.
     pub fn filter(&mut self, margin: ScoreMargin) {
         let Some((leader, best)) = self.leading_node() else { return };
+        if best.sum_q30 == 0 {
+            return;
+        }
         let floor = best.sum_q30 - margin.at_iteration(self.iteration);
         for (id, node) in self.nodes.iter_mut().enumerate() {
             if id as u32 != leader.0 && node.sum_q30 <= floor {
@@ -144,6 +149,8 @@ mod tests {
     #[test]
     fn a_blank_look_changes_nothing() {
         assert_eq!(kept(0.1, &[[0.0, 0.0, 0.0]]), [true, true, true]);
+        assert_eq!(kept(0.0, &[[0.0, 0.0, 0.0]]), [true, true, true]);
+        assert_eq!(kept(0.0, &[[0.0, 0.0, 0.0], [0.2, 0.5, 0.4]]), [false, true, false]);
     }
 
     #[test]

@@ -2,8 +2,9 @@
 //!
 //! For each pair of lines one division (mass per bin) and four additions into a difference array per angle bin; one
 //! cumulative sum a histogram; then normalisation and square roots. Departures from the plain formula: coordinates
-//! are rounded to 1/16 px, distances to 1/4096 bin, masses to 1/128 px, so a coefficient differs from exact arithmetic
-//! by less than 2e-4 (measured against the oracle).
+//! are rounded to 1/16 px, distances to 1/4096 bin, masses to 1/128 px. Coefficients within a scene of ten lines or more
+//! differ from exact arithmetic by less than 2e-4 in the mean and 7e-3 at worst (a sliver of mass over a bin border,
+//! magnified by the root), view scores of twenty or more by less than 3e-4: measured against the naive `f64` twin.
 
 use super::root::root_q15;
 use super::{DistanceKind, Line, PghShape};

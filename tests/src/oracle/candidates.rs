@@ -1,6 +1,7 @@
 //! The nodes still in play (paper, section 3.2): scores accumulate, the margin shrinks as `B_th / i`.
 //!
-//! The paper does not say whether accumulated scores are a sum or a mean; here they are a plain sum.
+//! The paper does not say whether accumulated scores are a sum or a mean; here they are a plain sum. Nor what a look
+//! without any score does; here it drops no node, even with a margin of zero.
 
 /// Accumulated scores of the nodes, and which are still candidates.
 #[derive(Debug, Clone)]
@@ -29,6 +30,9 @@ impl NaiveCandidates {
             }
         }
         let leader = self.leading_node();
+        if self.scores[leader] <= 0.0 {
+            return;
+        }
         let least = self.scores[leader] - self.score_margin / f64::from(self.looks);
         for node in 0..self.scores.len() {
             self.is_candidate[node] &= node == leader || self.scores[node] > least;
