@@ -6,7 +6,7 @@
 //! position at camera height, axes parallel to the world's.
 
 use super::NodeViews;
-use super::node_views::view_heading;
+use super::node_views::{half_spacing_rad, view_heading};
 use crate::camera::{CameraPose, StereoObservation, triangulate_feature};
 use crate::uncertainty::{NoiseKey, Sources};
 use edgeloc::database::{self, NodeModel, WriteError};
@@ -66,7 +66,8 @@ fn learn_node(
     key_of_view: impl Fn(u16) -> NoiseKey,
 ) -> LearnedNode {
     let view_count = node.views.len() as u16;
-    let half_spacing = core::f32::consts::PI / f32::from(view_count);
+    // Midpoints lie before the camera, so one or two views leave nothing out.
+    let sector_slope = if view_count > 2 { math::tan(half_spacing_rad(view_count)) } else { f32::INFINITY };
     let mut segments = Vec::new();
     let mut observation = StereoObservation { rig: *rig, features: Vec::new() };
     for (view_index, clean) in (0..view_count).zip(&node.views) {
@@ -74,16 +75,17 @@ fn learn_node(
         sources.apply(&mut observation, &key_of_view(view_index));
         let node_from_camera = CameraPose::new(Point3::default(), view_heading(view_index, view_count));
         let model = observation.features.iter().flat_map(|feature| triangulate_feature(rig, feature));
-        let own = model.filter(|segment| (-half_spacing..half_spacing).contains(&bearing(segment)));
+        let own = model.filter(|segment| is_in_sector(segment, sector_slope));
         segments.extend(own.map(|segment| node_from_camera.segment_from_camera(&segment)));
     }
     LearnedNode { position: node.position, segments }
 }
 
-/// Bearing of a segment's midpoint from the optical axis [rad], positive to the right.
-fn bearing(segment: &Segment3) -> f32 {
+/// Whether a segment's midpoint, in the camera frame, lies within a sector about the optical axis; of its two borders,
+/// at `slope` times the depth to either side, the right one belongs to the next sector.
+fn is_in_sector(segment: &Segment3, slope: f32) -> bool {
     let midpoint = segment.start.lerp(segment.end, 0.5);
-    math::atan2(midpoint.x, midpoint.z)
+    (-slope * midpoint.z..slope * midpoint.z).contains(&midpoint.x)
 }
 
 #[cfg(test)]
