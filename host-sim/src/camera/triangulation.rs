@@ -7,13 +7,19 @@
 //! Near-horizontal pieces are ill-conditioned: where a line rises by one row in m columns, a vertical error of e rows is
 //! an error of m e columns in the disparity, m = 11.4 at 5 degrees; exactly horizontal ones have no overlap at all. The
 //! matcher leaves out those within 5 degrees of the horizontal (the epipolar removal among the uncertainty sources);
-//! here only an overlap below [`MIN_OVERLAP_PX`] is refused.
+//! here an overlap below [`MIN_OVERLAP_PX`] is refused, and with it what is shorter than [`MIN_LENGTH_PX`].
 
 use super::StereoFeature;
 use edgeloc::geometry::{Point2, Point3, Segment2, Segment3, StereoRig};
 
 /// Least number of rows that both pieces must cover [px].
 pub const MIN_OVERLAP_PX: f32 = 1.0;
+
+/// Least length of the shared part in the left image [px].
+///
+/// The localiser leaves out what is shorter than 12 px, and turning on the spot lengthens an image by 1.4 at most: what
+/// falls short of this is a splinter between two gaps that would only fill the map (a quarter of it, in an office).
+pub const MIN_LENGTH_PX: f32 = 6.0;
 
 /// The 3-D segments of one feature in the left camera's frame: one for each left and right piece that share rows.
 ///
@@ -28,8 +34,8 @@ pub fn triangulate_feature<'a>(rig: &'a StereoRig, feature: &'a StereoFeature) -
 
 /// The 3-D segment of a left and a right piece in the left camera's frame, directed and polarised like the left one.
 ///
-/// `None` when they share fewer than [`MIN_OVERLAP_PX`] rows, or when at either end the disparity is not positive or
-/// the depth is outside the rig's `nearest_model_m` to `farthest_model_m`.
+/// `None` when they share fewer than [`MIN_OVERLAP_PX`] rows or [`MIN_LENGTH_PX`] of the left piece, or when at either
+/// end the disparity is not positive or the depth is outside the rig's `nearest_model_m` to `farthest_model_m`.
 #[must_use]
 pub fn triangulate_pieces(rig: &StereoRig, left: &Segment2, right: &Segment2) -> Option<Segment3> {
     let (left_top, left_bottom) = rows(left);
@@ -39,8 +45,13 @@ pub fn triangulate_pieces(rig: &StereoRig, left: &Segment2, right: &Segment2) ->
         return None;
     }
     let (start_row, end_row) = if left.start().y <= left.end().y { (top, bottom) } else { (bottom, top) };
-    let point = |row: f32| triangulate_point(rig, Point2::new(column(left, row), row), column(right, row));
-    Some(Segment3 { start: point(start_row)?, end: point(end_row)?, polarity: left.polarity() })
+    let start = Point2::new(column(left, start_row), start_row);
+    let end = Point2::new(column(left, end_row), end_row);
+    if start.distance(end) < MIN_LENGTH_PX {
+        return None;
+    }
+    let point = |left_point: Point2| triangulate_point(rig, left_point, column(right, left_point.y));
+    Some(Segment3 { start: point(start)?, end: point(end)?, polarity: left.polarity() })
 }
 
 fn triangulate_point(rig: &StereoRig, left: Point2, right_x_px: f32) -> Option<Point3> {
@@ -153,10 +164,11 @@ mod tests {
     }
 
     #[test]
-    fn too_few_shared_rows_and_impossible_depths_are_refused() {
+    fn too_little_in_common_and_impossible_depths_are_refused() {
         let left = piece((340.0, 100.0), (345.0, 200.0));
         let refused = [
             piece((310.0, 199.5), (315.0, 300.0)),
+            piece((310.0, 195.0), (315.0, 300.0)),
             piece((310.0, 250.0), (315.0, 300.0)),
             // Behind the camera, at infinity, beyond 16 m (3.8 px), nearer than 0.25 m (241 px).
             piece((350.0, 100.0), (355.0, 200.0)),

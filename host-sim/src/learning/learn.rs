@@ -174,9 +174,9 @@ mod tests {
         let (clean, broken) =
             (learn_nodes(&RIG, &views(), &Sources::none(), 1, 0), learn_nodes(&RIG, &views(), &sources, 1, 0));
         assert!(broken[0].segments.len() > clean[0].segments.len());
-        // A 3-D segment needs the edge in both images, which lose 11.25 % each on their own.
+        // A 3-D segment needs the edge in both images, which lose 11.25 % each on their own; splinters go as well.
         let kept_share = total(&broken) / total(&clean);
-        assert!((kept_share - 0.8875_f32.powi(2)).abs() < 0.03, "{kept_share}");
+        assert!((0.68..0.8875_f32.powi(2)).contains(&kept_share), "{kept_share}");
     }
 
     #[test]
