@@ -2,6 +2,10 @@
 //!
 //! World frame: metres, z up, the floor a robot drives on at z = 0.
 
+mod crease;
+pub mod file;
+pub mod import;
+mod mesh;
 mod occlusion;
 pub mod office;
 mod template;

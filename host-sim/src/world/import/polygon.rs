@@ -1,0 +1,86 @@
+//! Cutting a flat polygon into triangles by its ears (Meisters 1975), in the order of its corners.
+
+use nalgebra::Vector3;
+
+/// Polygons with more corners are cut as a fan: ear cutting takes the cube of the count at worst.
+const MAX_CORNERS: usize = 256;
+
+/// Triangles of the polygon with the given corners, as indices into `corners`, wound like the polygon.
+///
+/// Exact for simple polygons, convex or not. A polygon that crosses itself gives triangles with the same corners.
+pub(super) fn triangulate(corners: &[Vector3<f64>]) -> Vec<[usize; 3]> {
+    let count = corners.len();
+    if count < 3 {
+        return Vec::new();
+    }
+    let normal = area_normal(corners);
+    let mut left: Vec<usize> = (0..count).collect();
+    let mut triangles = Vec::with_capacity(count - 2);
+    while left.len() > 3 {
+        let ear =
+            if count > MAX_CORNERS { Some(1) } else { (0..left.len()).find(|&at| is_ear(corners, &left, at, &normal)) };
+        // Without an ear the polygon crosses itself: cut anywhere.
+        let at = ear.unwrap_or(1);
+        triangles.push(around(&left, at));
+        left.remove(at);
+    }
+    triangles.push([left[0], left[1], left[2]]);
+    triangles
+}
+
+/// Newell's normal, twice the area long.
+fn area_normal(corners: &[Vector3<f64>]) -> Vector3<f64> {
+    let origin = corners[0];
+    corners.windows(2).map(|pair| (pair[0] - origin).cross(&(pair[1] - origin))).sum()
+}
+
+fn around(left: &[usize], at: usize) -> [usize; 3] {
+    let count = left.len();
+    [left[(at + count - 1) % count], left[at], left[(at + 1) % count]]
+}
+
+/// Whether the corner at `at` is convex and its triangle holds no other corner.
+fn is_ear(corners: &[Vector3<f64>], left: &[usize], at: usize, normal: &Vector3<f64>) -> bool {
+    let ear = around(left, at);
+    let [a, b, c] = ear.map(|index| corners[index]);
+    let turn = |p: Vector3<f64>, q: Vector3<f64>, r: Vector3<f64>| (q - p).cross(&(r - p)).dot(normal);
+    if turn(a, b, c) <= 0.0 {
+        return false;
+    }
+    left.iter().filter(|index| !ear.contains(index)).all(|&index| {
+        let point = corners[index];
+        let is_corner = point == a || point == b || point == c;
+        is_corner || turn(a, b, point) < 0.0 || turn(b, c, point) < 0.0 || turn(c, a, point) < 0.0
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn flat(points: &[(f64, f64)]) -> Vec<Vector3<f64>> {
+        points.iter().map(|&(x, y)| Vector3::new(x, y, 0.5)).collect()
+    }
+
+    /// Signed areas of the triangles.
+    fn areas(corners: &[Vector3<f64>]) -> Vec<f64> {
+        let area = |[a, b, c]: [usize; 3]| (corners[b] - corners[a]).cross(&(corners[c] - corners[a])).z / 2.0;
+        triangulate(corners).into_iter().map(area).collect()
+    }
+
+    #[test]
+    fn a_concave_polygon_is_covered_once_without_folds() {
+        let arrow = flat(&[(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (3.0, 1.0), (1.0, 1.0), (0.0, 3.0)]);
+        let areas = areas(&arrow);
+        assert_eq!(areas.len(), 4);
+        assert!(areas.iter().all(|&area| area > 0.0), "{areas:?}");
+        assert!((areas.iter().sum::<f64>() - 6.5).abs() < 1e-12, "{areas:?}");
+    }
+
+    #[test]
+    fn degenerate_polygons_give_few_triangles_and_no_panic() {
+        assert!(areas(&flat(&[(0.0, 0.0), (1.0, 0.0)])).is_empty());
+        assert_eq!(areas(&flat(&[(1.0, 1.0); 7])).len(), 5);
+        assert_eq!(areas(&flat(&[(0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)])).len(), 2);
+    }
+}
