@@ -5,15 +5,15 @@
 //! | 0 | 8 | magic, the ASCII text `edgewrld` |
 //! | 8 | 4 | version, u32: 1 |
 //! | 12 | 4 | CRC-32 (ISO-HDLC, as in zip) of all bytes from offset 16 to the end, u32 |
-//! | 16 | 4 | length of the name N [bytes], u32 |
-//! | 20 | 4 | length of the origin O [bytes], u32 |
+//! | 16 | 4 | length of the name N in bytes, u32 |
+//! | 20 | 4 | length of the origin O in bytes, u32 |
 //! | 24 | 4 | count of edges E, u32 |
 //! | 28 | 4 | count of vertices V, u32 |
 //! | 32 | 4 | count of triangles T, u32 |
 //! | 36 | N | name, UTF-8 |
 //! | 36 + N | O | origin, UTF-8 |
-//! | 36 + N + O | 28 E | edges: start x y z, end x y z [m], f32 each; then u32: 0 left brighter, 1 right brighter |
-//! | .. + 28 E | 12 V | vertices: x y z [m], f32 each |
+//! | 36 + N + O | 28 E | edges: start x y z, end x y z in metres, f32 each; then u32: 0 left brighter, 1 right brighter |
+//! | .. + 28 E | 12 V | vertices: x y z in metres, f32 each |
 //! | .. + 12 V | 12 T | triangles: three indices of vertices, u32 each |
 //!
 //! The file ends there: its length follows from the counts. A reader of version 1 refuses every other version.
@@ -35,10 +35,10 @@ const VERTEX_BYTES: usize = 12;
 const TRIANGLE_BYTES: usize = 12;
 const CRC: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
 
-/// Largest world file [bytes]: 2 GiB, some 50 million triangles.
+/// Largest world file in bytes: 2 GiB, some 50 million triangles.
 const MAX_FILE_BYTES: u64 = 2 << 30;
 
-/// Largest magnitude of a coordinate [m].
+/// Largest magnitude of a coordinate in metres.
 const MAX_COORDINATE_M: f32 = 100_000.0;
 
 /// Why a world file can't be written or read.
@@ -193,7 +193,7 @@ fn push_point(bytes: &mut Vec<u8>, point: Point3) {
     bytes.extend([point.x, point.y, point.z].iter().flat_map(|coordinate| coordinate.to_le_bytes()));
 }
 
-/// Length of a file with these header fields [bytes].
+/// Length of a file with these header fields in bytes.
 fn file_length([name, origin, edges, vertices, triangles]: [u32; 5]) -> u64 {
     // Five counts below 2^32 of at most 28 bytes each stay far below 2^64.
     HEADER_BYTES as u64

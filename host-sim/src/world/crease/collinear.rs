@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use std::collections::HashMap;
 
-/// Pieces this near each other touch, and pieces this near a line lie on it [m].
+/// Pieces this near each other touch, and pieces this near a line lie on it in metres.
 const TOLERANCE_M: f64 = 1e-3;
 /// Least cosine between the directions of pieces of one run: 3 degrees.
 const COS_ALONG: f64 = 0.998_63;
@@ -115,7 +115,7 @@ struct EndPointSearch<'a> {
     budget: u64,
 }
 
-/// Width of the smallest cells [m].
+/// Width of the smallest cells in metres.
 const CELL_M: f64 = 0.01;
 
 impl<'a> EndPointSearch<'a> {

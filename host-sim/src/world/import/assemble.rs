@@ -7,7 +7,7 @@ use super::session::{MAX_TRIANGLES, PlacedModel};
 use super::{BoundingBox, ImportOptions, ImportProblem, ImportReport, ModelReport};
 use edgeloc::geometry::{Point3, Segment3};
 
-/// Largest magnitude of a coordinate [m]; more means a wrong unit, and costs f32 its millimetres.
+/// Largest magnitude of a coordinate in metres; more means a wrong unit, and costs f32 its millimetres.
 const MAX_COORDINATE_M: f64 = 10_000.0;
 
 /// The world so far.

@@ -33,15 +33,15 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ImportOptions {
-    /// Least length of an edge that enters the world [m], 0 to 100; default 0.10, which leaves the paper's number of
+    /// Least length of an edge that enters the world in metres, 0 to 100; default 0.10, which leaves the paper's number of
     /// features in a flat. Shorter ones are counted in the report.
     pub min_edge_m: f64,
-    /// Least angle between two faces that shows as an edge [degrees], 0 to 180 exclusive; default 30.
+    /// Least angle between two faces that shows as an edge in degrees, 0 to 180 exclusive; default 30.
     pub crease_deg: f64,
     /// Further folders to search for models (each sub-folder a model), after the world's own folder and the `models/`
     /// folder in or beside it; default none.
     pub model_folders: Vec<PathBuf>,
-    /// Length of one unit of an imported OBJ file [m]; default 1.
+    /// Length of one unit of an imported OBJ file in metres; default 1.
     pub obj_unit_m: f64,
     /// The axis that points up in an imported OBJ file; default z.
     pub obj_up_axis: UpAxis,

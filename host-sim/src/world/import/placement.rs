@@ -16,7 +16,7 @@ impl Placement {
         Self { linear: Matrix3::identity(), translation: Vector3::zeros() }
     }
 
-    /// A shift [m].
+    /// A shift in metres.
     pub(super) fn translation(shift: Vector3<f64>) -> Self {
         Self { linear: Matrix3::identity(), translation: shift }
     }
