@@ -16,16 +16,17 @@ pub struct StereoObservation {
 /// An uncertainty source may move or break the pieces in an image, never look at the world behind them.
 #[derive(Debug, PartialEq, Default)]
 pub struct StereoFeature {
-    /// Pieces detected in the left image [px]; one before edge detection loss, none when the edge is not seen there.
+    /// Pieces detected in the left image, in pixels: one before edge detection loss, none when the edge is not
+    /// seen there.
     pub left: Vec<Segment2>,
-    /// Pieces detected in the right image [px].
+    /// Pieces detected in the right image, in pixels.
     pub right: Vec<Segment2>,
     /// Whether the stereo matcher pairs the left with the right pieces; an unmatched feature is seen but yields no
     /// 3-D segment.
     pub is_matchable: bool,
 }
 
-/// Replaces the end points of every piece of one image; `moved` gives the new start and end [px].
+/// Replaces the end points of every piece of one image; `moved` gives the new start and end, in pixels.
 ///
 /// A piece whose new end points make no [`Segment2`] (beyond 2048 px, or coinciding) is dropped: no detector reports
 /// it. Pieces moved a little across the image border stay.

@@ -1,8 +1,8 @@
 //! The two images of the stereo rig at one pose: every visible edge piece projected into both.
 //!
-//! The left camera's optical centre is the eye: what it sees decides what is visible, and the node's frame starts there.
-//! Two simplifications: the right camera is taken to see the same pieces as the left one (12 cm of baseline hide little
-//! more), and what only the right camera sees is left out, because it reaches neither a scene nor a model.
+//! The left camera's optical centre is the eye: what it sees decides what is visible, and a node's frame starts there.
+//! Two simplifications: the right camera is taken to see the same pieces as the left one (12 cm of baseline hide
+//! little more), and what only the right camera sees is left out, because it reaches neither a scene nor a model.
 
 use super::{CameraPose, StereoFeature, StereoObservation};
 use crate::world::ViewpointVisibility;

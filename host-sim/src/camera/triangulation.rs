@@ -4,18 +4,18 @@
 //! overlap, with disparity d = x_left - x_right, the point is z = f b / d, x = (x_left - c_x) z / f,
 //! y = (row - c_y) z / f.
 //!
-//! Near-horizontal pieces are ill-conditioned: where a line rises by one row in m columns, a vertical error of e rows is
-//! an error of m e columns in the disparity, m = 11.4 at 5 degrees; exactly horizontal ones have no overlap at all. The
-//! matcher leaves out those within 5 degrees of the horizontal (the epipolar removal among the uncertainty sources);
+//! Near-horizontal pieces are ill-conditioned: where a line rises by one row in m columns, a vertical error of e rows
+//! is an error of m e columns in the disparity, m = 11.4 at 5 degrees; exactly horizontal ones have no overlap at all.
+//! The matcher leaves out those within 5 degrees of the horizontal (the epipolar removal among the uncertainty sources);
 //! here an overlap below [`MIN_OVERLAP_PX`] is refused, and with it what is shorter than [`MIN_LENGTH_PX`].
 
 use super::StereoFeature;
 use edgeloc::geometry::{Point2, Point3, Segment2, Segment3, StereoRig};
 
-/// Least number of rows that both pieces must cover [px].
+/// Least number of rows that both pieces must cover, in pixels.
 pub const MIN_OVERLAP_PX: f32 = 1.0;
 
-/// Least length of the shared part in the left image [px].
+/// Least length of the shared part in the left image, in pixels.
 ///
 /// The localiser leaves out what is shorter than 12 px, and turning on the spot lengthens an image by 1.4 at most: what
 /// falls short of this is a splinter between two gaps that would only fill the map (a quarter of it, in an office).

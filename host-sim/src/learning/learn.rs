@@ -17,7 +17,7 @@ use rayon::prelude::*;
 /// What was learned at one node.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LearnedNode {
-    /// Where the left camera stood, world frame [m].
+    /// Where the left camera stood, in metres in the world frame.
     pub position: Point2,
     /// The merged 3-D segments of all views, node frame.
     pub segments: Vec<Segment3>,

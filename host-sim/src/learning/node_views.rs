@@ -10,15 +10,16 @@ use edgeloc::geometry::{Angle, Heading, Point2, Point3, StereoRig};
 use edgeloc::math;
 use rayon::prelude::*;
 
-/// Farthest that the uncertainty sources move a left piece sideways [px].
+/// Farthest that the uncertainty sources move a left piece sideways, in pixels.
 const MOVE_MARGIN_PX: f32 = 40.0;
 
 /// The clean stereo observations at one node, at equally spaced headings.
 #[derive(Debug, Clone)]
 pub struct NodeViews {
-    /// Where the left camera stood, world frame [m].
+    /// Where the left camera stood, in metres in the world frame.
     pub position: Point2,
-    /// One observation per view, of what can reach the model; view `i` of `n` looks towards heading `i / n` of a turn from +x.
+    /// One observation per view, of what can reach the model; view `i` of `n` looks towards heading `i / n` of a
+    /// turn from +x.
     pub views: Vec<StereoObservation>,
 }
 
@@ -70,7 +71,7 @@ fn may_reach_model(rig: &StereoRig, feature: &StereoFeature, view_count: u16) ->
     })
 }
 
-/// Half the angle between neighbouring views [rad].
+/// Half the angle between neighbouring views, in radians.
 pub(super) fn half_spacing_rad(view_count: u16) -> f32 {
     core::f32::consts::PI / f32::from(view_count)
 }

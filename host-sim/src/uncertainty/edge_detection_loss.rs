@@ -23,7 +23,7 @@ const FACTS: SourceFacts = SourceFacts {
     citation: "Tian et al., section 4.2, after Coupe 2009",
 };
 
-/// Greatest length of a piece with one gap, and with two [px].
+/// Greatest length of a piece with one gap, and with two, in pixels.
 const GAP_LENGTHS_PX: [f32; 2] = [50.0, 150.0];
 
 /// Most gaps in one piece.

@@ -24,13 +24,13 @@ const FACTS: SourceFacts = SourceFacts {
     citation: "Tian et al., section 4.2, after Crossley 2000",
 };
 
-/// Makes near-horizontal features unmatchable; the magnitude is the greatest angle left out [degrees].
+/// Makes near-horizontal features unmatchable; the magnitude is the greatest angle left out, in degrees.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct EpipolarRemoval {
     /// Whether the source acts.
     pub enabled: bool,
-    /// Greatest angle to the horizontal that is left out [degrees].
+    /// Greatest angle to the horizontal that is left out, in degrees.
     pub magnitude: f64,
 }
 

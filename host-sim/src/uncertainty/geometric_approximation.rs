@@ -21,13 +21,13 @@ const FACTS: SourceFacts = SourceFacts {
     citation: "Tian et al., section 4.2, after Ashbrook et al. 1995",
 };
 
-/// Moves each end point of each piece; the magnitude is psi_g, the standard deviation in x and in y [px].
+/// Moves each end point of each piece; the magnitude is psi_g, the standard deviation in x and in y, in pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct GeometricApproximation {
     /// Whether the source acts.
     pub enabled: bool,
-    /// psi_g [px].
+    /// psi_g, in pixels.
     pub magnitude: f64,
 }
 

@@ -22,13 +22,13 @@ const FACTS: SourceFacts = SourceFacts {
     citation: "Tian et al., section 4.2, after Coupe 2009",
 };
 
-/// Moves each feature along its image normal; the magnitude is psi_l [px].
+/// Moves each feature along its image normal; the magnitude is psi_l, in pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct LateralEdgeShift {
     /// Whether the source acts.
     pub enabled: bool,
-    /// psi_l [px].
+    /// psi_l, in pixels.
     pub magnitude: f64,
     /// Whether the left and right image of a feature move alike.
     pub is_common: bool,

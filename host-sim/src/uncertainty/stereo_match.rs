@@ -26,7 +26,7 @@ const FACTS: SourceFacts = SourceFacts {
     citation: "Tian et al., section 4.2, after Crossley 2000",
 };
 
-/// Greatest error of the disparity of a wrong match [px].
+/// Greatest error of the disparity of a wrong match, in pixels.
 const MAX_DISPARITY_ERROR_PX: f64 = 20.0;
 
 /// Displaces the right pieces of some features; the magnitude is psi_s, the share of the matchable features.
