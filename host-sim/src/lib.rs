@@ -15,6 +15,7 @@ pub mod camera;
 pub mod learning;
 pub mod monte_carlo;
 pub mod random;
+pub mod report;
 pub mod scenario;
 pub mod uncertainty;
 pub mod world;

@@ -1,0 +1,164 @@
+//! Where a run comes from: program, command, machine, world, time. `manifest.json` is written last, so a folder that
+//! has it is complete.
+
+use crate::scenario::{Scenario, WorldChoice};
+use crate::world::WireframeWorld;
+use serde::{Deserialize, Serialize};
+
+/// Where a run comes from.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// Version of the program.
+    pub program_version: String,
+    /// Commit the program was built from, when it was built in a repository.
+    pub git_commit: Option<String>,
+    /// The command line.
+    pub command: Vec<String>,
+    /// Scenario name.
+    pub scenario: String,
+    /// Seed of the run.
+    pub seed: u64,
+    /// The world.
+    pub world: WorldFacts,
+    /// The machine.
+    pub host: HostFacts,
+    /// Start, RFC 3339 in UTC.
+    pub started_utc: String,
+    /// End, RFC 3339 in UTC.
+    pub finished_utc: String,
+    /// Rows of trials.
+    pub rows: usize,
+    /// Trials of all rows together.
+    pub trials: usize,
+}
+
+/// Which world a run took place in.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct WorldFacts {
+    /// Its name.
+    pub name: String,
+    /// Where it came from.
+    pub origin: String,
+    /// Its file, unless it was generated.
+    pub file: Option<String>,
+    /// Straight edges.
+    pub edges: usize,
+    /// Triangles of the surfaces.
+    pub triangles: usize,
+    /// CRC-64 of edges and surfaces, hexadecimal.
+    pub checksum: String,
+}
+
+/// The machine a run took place on.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct HostFacts {
+    /// Operating system.
+    pub os: String,
+    /// Processor architecture.
+    pub architecture: String,
+    /// Processor model, when the system names it.
+    pub processor: Option<String>,
+    /// Threads the machine runs at once.
+    pub available_threads: usize,
+    /// Threads the run used.
+    pub used_threads: usize,
+}
+
+impl Manifest {
+    /// The manifest of a run in `world` that began at `started` and ends now.
+    #[must_use]
+    pub fn new(
+        scenario: &Scenario,
+        world: WorldFacts,
+        used_threads: usize,
+        trials: usize,
+        started: jiff::Timestamp,
+    ) -> Self {
+        Self {
+            program_version: env!("CARGO_PKG_VERSION").to_owned(),
+            git_commit: option_env!("EDGELOC_GIT_COMMIT").map(str::to_owned),
+            command: std::env::args().collect(),
+            scenario: scenario.name.clone(),
+            seed: scenario.seed,
+            world,
+            host: HostFacts::new(used_threads),
+            started_utc: format!("{started:.0}"),
+            finished_utc: format!("{:.0}", jiff::Timestamp::now()),
+            rows: scenario.rows.len(),
+            trials,
+        }
+    }
+}
+
+impl WorldFacts {
+    /// The facts of `world`, chosen by `choice`.
+    #[must_use]
+    pub fn new(world: &WireframeWorld, choice: &WorldChoice) -> Self {
+        let file = match choice {
+            WorldChoice::Office { .. } => None,
+            WorldChoice::File { file } => Some(file.display().to_string()),
+        };
+        Self {
+            name: world.name.clone(),
+            origin: world.origin.clone(),
+            file,
+            edges: world.edges.len(),
+            triangles: world.surfaces.triangles.len(),
+            checksum: checksum(world),
+        }
+    }
+}
+
+impl HostFacts {
+    fn new(used_threads: usize) -> Self {
+        let cpu_info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+        let model = cpu_info.lines().find(|line| line.starts_with("model name")).and_then(|line| line.split_once(':'));
+        Self {
+            os: std::env::consts::OS.to_owned(),
+            architecture: std::env::consts::ARCH.to_owned(),
+            processor: model.map(|(_, model)| model.trim().to_owned()),
+            available_threads: std::thread::available_parallelism().map_or(1, usize::from),
+            used_threads,
+        }
+    }
+}
+
+/// CRC-64 of edges and surfaces, bit for bit: worlds of the same sum give the same trials.
+fn checksum(world: &WireframeWorld) -> String {
+    const CRC: crc::Crc<u64> = crc::Crc::<u64>::new(&crc::CRC_64_XZ);
+    let mut digest = CRC.digest();
+    let mut point = |point: &edgeloc::geometry::Point3| {
+        for coordinate in [point.x, point.y, point.z] {
+            digest.update(&coordinate.to_le_bytes());
+        }
+    };
+    for edge in &world.edges {
+        point(&edge.start);
+        point(&edge.end);
+    }
+    world.surfaces.vertices.iter().for_each(&mut point);
+    for edge in &world.edges {
+        digest.update(&[edge.polarity as u8]);
+    }
+    for corner in world.surfaces.triangles.iter().flatten() {
+        digest.update(&corner.to_le_bytes());
+    }
+    format!("{:016x}", digest.finalize())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::sample;
+
+    #[test]
+    fn the_checksum_sees_every_part_of_a_world() {
+        let world = sample::run().world;
+        let (mut moved, mut flipped, mut covered) = (world.clone(), world.clone(), world.clone());
+        moved.edges[3].end.z += 0.001;
+        flipped.edges[3].polarity = flipped.edges[3].polarity.flipped();
+        covered.surfaces.triangles.push([0, 1, 2]);
+        let sums = [&world, &moved, &flipped, &covered].map(checksum);
+        assert!((1..4).all(|other| sums[other] != sums[0]), "{sums:?}");
+    }
+}

@@ -1,0 +1,299 @@
+//! `report.html`: one self-contained page of a run, with inline drawings and native tooltips, no scripts.
+
+use super::drawing::{self, SERIES_COUNT, percent};
+use super::{
+    FloorPlan, FreeCells, PAPER_INTERVAL, RowSummary, RunResults, answer_distance_m, looks_histogram, rate_strip,
+    success_by_distance, trial_marks, worst_trials,
+};
+use crate::monte_carlo::{Outcome, TrialRecord};
+use crate::scenario::{Row, Start};
+use crate::world::WireframeWorld;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use svg::node::element::{Definitions, Group, SVG, Use};
+
+const STYLE: &str = include_str!("page.css");
+/// Failures listed with the command that replays them.
+const WORST_COUNT: usize = 3;
+
+/// The report of a run. `folder` is how commands name its folder.
+///
+/// Without the world or its free space the plan shows what is left.
+#[must_use]
+pub fn page(results: &RunResults, world: Option<&WireframeWorld>, free: Option<&FreeCells>, folder: &str) -> String {
+    let plan = FloorPlan::new(world, free, &results.nodes);
+    let title = format!("edgeloc run: {}", results.scenario.name);
+    let markup = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { (title) }
+                style { (PreEscaped(STYLE)) (PreEscaped(drawing::STYLE)) }
+            }
+            body { main {
+                header {
+                    h1 { (title) }
+                    p { (subtitle(results)) }
+                }
+                (headline(results))
+                (distance(results))
+                (plans(results, &plan))
+                (looks(results))
+                (worst(results, folder))
+                (facts(results, world.is_some()))
+                (configuration(results))
+            } }
+        }
+    };
+    markup.into_string()
+}
+
+fn subtitle(results: &RunResults) -> String {
+    let Manifested { trials, rows, world, started } = Manifested::of(results);
+    format!("{trials} trials in {rows} rows · world {world} · started {started} UTC")
+}
+
+/// The words of the subtitle.
+struct Manifested<'r> {
+    trials: usize,
+    rows: usize,
+    world: &'r str,
+    started: String,
+}
+
+impl<'r> Manifested<'r> {
+    fn of(results: &'r RunResults) -> Self {
+        let manifest = &results.manifest;
+        let started = manifest.started_utc.trim_end_matches('Z').replace('T', " ");
+        Self { trials: manifest.trials, rows: manifest.rows, world: &manifest.world.name, started }
+    }
+}
+
+fn headline(results: &RunResults) -> Markup {
+    let summary = &results.summary;
+    let (low, high) = PAPER_INTERVAL;
+    html! { section {
+        h2 { "Success" }
+        p.note {
+            "A trial succeeds when the answered node is one of the two nearest to the true position. Brackets and bars are "
+            "95 % Wilson intervals. The paper reports " (percent(summary.paper_rate)) " ["
+            (format!("{:.1}, {:.1}", 100.0 * low, 100.0 * high)) "] in simulation (dashed, shown beside the near starts); "
+            "blind guessing gives " (percent(summary.chance_rate)) " (dotted)."
+        }
+        div.wide { table {
+            tr {
+                th { "row" } th { "success" } th { "0 to 100 %" } th.number { "trials" } th.number { "looks" br; "mean" }
+                th.number { "time per look" br; "mean" } th.number { "can't tell" } th.number { "to nearest node" br; "mean" }
+                th.number { "to answered node" br; "median" }
+            }
+            @for (series, row) in summary.rows.iter().enumerate() { (headline_row(results, series, row)) }
+        } }
+    } }
+}
+
+fn headline_row(results: &RunResults, series: usize, row: &RowSummary) -> Markup {
+    let timings = results.timings.rows.iter().find(|timings| timings.row == row.row);
+    let paper = (row.start == Start::Near).then_some(PAPER_INTERVAL);
+    let strip = rate_strip(series, row.success(), paper, results.summary.chance_rate);
+    html! { tr {
+        td { (key(series)) (row.row) }
+        td.strong {
+            @match row.success_rate {
+                Some(rate) => {
+                    (percent(rate)) " "
+                    span.quiet { "[" (format!("{:.1}, {:.1}", 100.0 * row.success_rate_low, 100.0 * row.success_rate_high)) "]" }
+                }
+                None => span.quiet { "no trials" },
+            }
+        }
+        td { (inline(&strip)) }
+        td.number { (row.trials) }
+        td.number { (format!("{:.2}", row.mean_looks)) }
+        td.number { @if let Some(timings) = timings { (format!("{:.1} ms", 1e3 * timings.mean_s_per_look)) } }
+        td.number { (row.unknown) @if row.errors > 0 { " + " (row.errors) " errors" } }
+        td.number { (format!("{:.2} m", row.mean_nearest_node_distance_m)) }
+        td.number { @if let Some(distance) = row.median_answer_distance_m { (format!("{distance:.2} m")) } }
+    } }
+}
+
+fn distance(results: &RunResults) -> Markup {
+    let rows = &results.scenario.rows;
+    html! { section {
+        h2 { "Success against distance to the nearest node" }
+        p.note { "Displacement from the learned places is what breaks the method. Bins of fewer than 5 trials are left out; dashed: the paper." }
+        (legend(rows))
+        div.wide { (inline(&success_by_distance(rows, &results.records))) }
+    } }
+}
+
+fn plans(results: &RunResults, plan: &FloorPlan) -> Markup {
+    let rows = &results.scenario.rows;
+    // The world is drawn once and used by each plan.
+    let shared = SVG::new()
+        .set("class", "drawing")
+        .set("width", 0)
+        .set("height", 0)
+        .set("style", "position:absolute")
+        .add(Definitions::new().add(Group::new().set("id", "world").add(plan.background()).add(plan.node_marks())));
+    html! { section {
+        h2 { "Where it worked" }
+        p.note { "Seen from above: every edge of the world, free space tinted. A failure has a line to the node that was answered. Point at a mark for its trial." }
+        ul.legend {
+            li { span.key.kgood {} "success" } li { span.key.kbad {} "failure" } li { span.key.kunknown {} "can't tell" }
+            li { span.key.knode {} "node" } li { span.key.kfree {} "free space" }
+        }
+        (inline(&shared))
+        div.panels {
+            @for (series, row) in rows.iter().enumerate() {
+                figure {
+                    figcaption { (key(series)) (row.name) }
+                    (inline(&plan.canvas().add(Use::new().set("href", "#world")).add(
+                        trial_marks(plan, results.records.iter().filter(|record| record.row == row.name)),
+                    ).add(plan.scale_bar())))
+                }
+            }
+        }
+    } }
+}
+
+fn looks(results: &RunResults) -> Markup {
+    let max_looks = results.scenario.localizer.max_looks;
+    html! { section {
+        h2 { "Looks" }
+        p.note { "How many looks a trial took until the answer: right ones green, others red. After " (max_looks) " looks the leading node is the answer." }
+        div.panels {
+            @for row in &results.scenario.rows { figure { (inline(&looks_histogram(row, &results.records, max_looks))) } }
+        }
+    } }
+}
+
+fn worst(results: &RunResults, folder: &str) -> Markup {
+    let worst = worst_trials(&results.records, &results.nodes, WORST_COUNT);
+    html! { section {
+        h2 { "The worst trials" }
+        @if worst.is_empty() {
+            p.note { "None: every trial succeeded." }
+        } @else {
+            p.note { "Failures whose answer lies farthest from the truth. The command shows the trial look by look, with drawings." }
+            @for record in worst {
+                h3 { (describe(record, results)) }
+                pre { (replay_command(record, folder)) }
+            }
+        }
+    } }
+}
+
+fn describe(record: &TrialRecord, results: &RunResults) -> String {
+    let answer = match (record.outcome, record.answered_node) {
+        (Outcome::Localized, Some(node)) => {
+            let distance = answer_distance_m(record, &results.nodes).unwrap_or(f64::NAN);
+            format!("answered node {node}, {distance:.1} m away")
+        }
+        (Outcome::Error, _) => "the localiser refused".to_owned(),
+        _ => "could not tell".to_owned(),
+    };
+    format!(
+        "{}, trial {}: {answer}, after {} looks; scores {:.3} against {:.3} of the better near node",
+        record.row,
+        record.trial,
+        record.looks,
+        record.leader_score,
+        record.truth_score.unwrap_or(0.0)
+    )
+}
+
+/// The command that replays a trial of the run in `folder`.
+#[must_use]
+pub fn replay_command(record: &TrialRecord, folder: &str) -> String {
+    format!("edgeloc replay {} --row {} --trial {}", quoted(folder), quoted(&record.row), record.trial)
+}
+
+/// `word` as a shell takes it.
+fn quoted(word: &str) -> String {
+    let is_plain = !word.is_empty() && word.bytes().all(|byte| byte.is_ascii_alphanumeric() || b"-_./".contains(&byte));
+    if is_plain { word.to_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }
+}
+
+fn facts(results: &RunResults, has_world: bool) -> Markup {
+    let RunResults { manifest, summary, timings, scenario, .. } = results;
+    let (world, host) = (&manifest.world, &manifest.host);
+    let views = scenario.learning.views;
+    html! { section {
+        h2 { "Facts" }
+        div.facts {
+            dl {
+                dt { "world" } dd { (world.name) }
+                dt { "origin" } dd { (world.origin) }
+                @if let Some(file) = &world.file { dt { "file" } dd { (file) @if !has_world { " (not found for this report)" } } }
+                dt { "edges" } dd { (world.edges) " straight edges, " (world.triangles) " triangles" }
+                dt { "checksum" } dd { code { (world.checksum) } }
+                dt { "map" } dd { (summary.nodes) " nodes of " (views) " views, " (format!("{:.0}", summary.map.segments_per_node)) " segments a node" }
+                dt { "map size" } dd { (format!("{:.0} kB", summary.map.bytes / 1e3)) }
+                dt { "noise draws" } dd { "the map is learned anew every " (scenario.trials_per_map) " trials" }
+            }
+            dl {
+                dt { "program" } dd { "edgeloc " (manifest.program_version) @if let Some(commit) = &manifest.git_commit { ", commit " code { (commit.get(..12).unwrap_or(commit)) } } }
+                dt { "command" } dd { code { (manifest.command.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ")) } }
+                dt { "seed" } dd { (manifest.seed) }
+                dt { "wall time" } dd { (format!("{:.1} s: {:.1} s to prepare, {:.1} s for learning and trials", timings.total_s(), timings.prepare_s, timings.trials_s)) }
+                dt { "machine" } dd { (host.processor.as_deref().unwrap_or("unnamed processor")) ", " (host.architecture) ", " (host.os) }
+                dt { "threads" } dd { (host.used_threads) " of " (host.available_threads) }
+                dt { "finished" } dd { (manifest.finished_utc) }
+            }
+        }
+    } }
+}
+
+fn configuration(results: &RunResults) -> Markup {
+    html! { section {
+        h2 { "Configuration" }
+        p.note { "The whole scenario as it ran, settings of the command line included; the file " code { "scenario.toml" } " in the run's folder runs as it is." }
+        details { summary { "scenario.toml" } pre { (results.scenario.to_toml()) } }
+    } }
+}
+
+fn legend(rows: &[Row]) -> Markup {
+    html! { ul.legend { @for (series, row) in rows.iter().enumerate() { li { (key(series)) (row.name) } } } }
+}
+
+fn key(series: usize) -> Markup {
+    html! { span class={ "key k" (series % SERIES_COUNT) } {} }
+}
+
+fn inline(drawing: &SVG) -> PreEscaped<String> {
+    PreEscaped(drawing.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::sample;
+
+    #[test]
+    fn the_page_is_self_contained_and_complete() {
+        let sample = sample::run();
+        let page = page(&sample.results, Some(&sample.world), Some(&sample.free), "runs/2026-01-02-hall");
+        for part in ["near, no polarity", "edgeloc replay runs/2026-01-02-hall --row", "[localizer.pgh]", "<title>"] {
+            assert!(page.contains(part), "the page lacks {part:?}");
+        }
+        assert!(!page.contains("<script") && !page.contains("src=") && !page.contains("NaN"));
+        if let Some(path) = std::env::var_os("EDGELOC_SAMPLE_REPORT") {
+            std::fs::write(path, &page).expect("a written page");
+        }
+    }
+
+    #[test]
+    fn a_page_without_the_world_is_still_a_page() {
+        let page = page(&sample::run().results, None, None, "runs/x");
+        assert!(page.contains("Where it worked"));
+    }
+
+    #[test]
+    fn names_are_escaped_in_markup_and_shell() {
+        let mut results = sample::run().results;
+        results.manifest.world.name = "<b>".to_owned();
+        assert!(!page(&results, None, None, "it's").contains("<b>"));
+        assert_eq!(quoted("it's"), r"'it'\''s'");
+    }
+}

@@ -1,0 +1,290 @@
+//! The folder of a run: `manifest.json`, `scenario.toml`, `trials.csv`, `nodes.csv`, `summary.json`, `timings.json`,
+//! `look_times.csv`, `report.html`.
+//!
+//! Every file is written under another name and renamed, so that none is ever half there. A folder is never reused.
+
+use super::{Manifest, RunTimings, Summary, timings::look_times_csv};
+use crate::monte_carlo::TrialRecord;
+use crate::scenario::{Scenario, ScenarioError};
+use edgeloc::geometry::Point2;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use std::fs;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+use thiserror::Error;
+
+/// Longest file read back [bytes]: a million trials and room to spare.
+const MAX_FILE_BYTES: u64 = 512 << 20;
+
+/// All that is known of a finished run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunResults {
+    /// Where the run comes from.
+    pub manifest: Manifest,
+    /// What was run.
+    pub scenario: Scenario,
+    /// Where the nodes are, world frame.
+    pub nodes: Vec<Point2>,
+    /// One record a trial.
+    pub records: Vec<TrialRecord>,
+    /// The figures.
+    pub summary: Summary,
+    /// The wall times.
+    pub timings: RunTimings,
+}
+
+/// The folder of a run.
+#[derive(Debug, Clone)]
+pub struct RunFolder {
+    path: PathBuf,
+}
+
+/// A line of `nodes.csv`.
+#[derive(Serialize, Deserialize)]
+struct NodeLine {
+    node: usize,
+    x_m: f32,
+    y_m: f32,
+}
+
+impl RunFolder {
+    /// A new folder `<date>-<name>` in `parent`, with a number when that is taken.
+    ///
+    /// # Errors
+    /// When it can't be made.
+    pub fn create(parent: &Path, date: &str, name: &str) -> Result<Self, RunFolderError> {
+        let failed = |path: &Path| RunFolderError::writing(path.to_owned());
+        fs::create_dir_all(parent).map_err(failed(parent))?;
+        for attempt in 1.. {
+            let suffix = if attempt == 1 { String::new() } else { format!("-{attempt}") };
+            let path = parent.join(format!("{date}-{name}{suffix}"));
+            match fs::create_dir(&path) {
+                Ok(()) => return Ok(Self { path }),
+                Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists && attempt < 100_000 => {}
+                Err(error) => return Err(failed(&path)(error)),
+            }
+        }
+        unreachable!("the last attempt returns")
+    }
+
+    /// The folder of a finished run.
+    ///
+    /// # Errors
+    /// When it is not one.
+    pub fn open(path: &Path) -> Result<Self, RunFolderError> {
+        if path.join("manifest.json").is_file() {
+            Ok(Self { path: path.to_owned() })
+        } else {
+            Err(RunFolderError::NotARun { path: path.to_owned() })
+        }
+    }
+
+    /// Its path.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes a file whole.
+    ///
+    /// # Errors
+    /// When it can't be written.
+    pub fn write(&self, file: &str, content: &[u8]) -> Result<PathBuf, RunFolderError> {
+        let path = self.path.join(file);
+        let partial = self.path.join(format!(".{file}.partial"));
+        fs::write(&partial, content)
+            .and_then(|()| fs::rename(&partial, &path))
+            .map_err(RunFolderError::writing(path.clone()))?;
+        Ok(path)
+    }
+
+    /// Writes the results, the manifest last.
+    ///
+    /// # Errors
+    /// When a file can't be written.
+    pub fn write_results(&self, results: &RunResults, look_times: &[Vec<Duration>]) -> Result<(), RunFolderError> {
+        let table = |path: &str, bytes: Result<Vec<u8>, csv::Error>| {
+            let bytes = bytes.map_err(|error| RunFolderError::writing(self.path.join(path))(error.into()))?;
+            self.write(path, &bytes)
+        };
+        let nodes = results.nodes.iter().enumerate().map(|(node, at)| NodeLine { node, x_m: at.x, y_m: at.y });
+        self.write("scenario.toml", results.scenario.to_toml().as_bytes())?;
+        table("trials.csv", to_csv(&results.records))?;
+        table("nodes.csv", to_csv(nodes))?;
+        table("look_times.csv", look_times_csv(&results.records, look_times))?;
+        self.write("summary.json", &to_json(&results.summary))?;
+        self.write("timings.json", &to_json(&results.timings))?;
+        self.write("manifest.json", &to_json(&results.manifest))?;
+        Ok(())
+    }
+
+    /// Reads the results back.
+    ///
+    /// # Errors
+    /// When a file is missing or is not what it should be.
+    pub fn read_results(&self) -> Result<RunResults, RunFolderError> {
+        let scenario_text = self.read("scenario.toml")?;
+        let scenario = Scenario::parse(&scenario_text, &self.path.join("scenario.toml").display().to_string())?;
+        scenario.check().map_err(|illegal| self.damaged("scenario.toml", &illegal))?;
+        let lines: Vec<NodeLine> = self.read_table("nodes.csv")?;
+        Ok(RunResults {
+            manifest: self.read_json("manifest.json")?,
+            scenario,
+            nodes: lines.iter().map(|line| Point2::new(line.x_m, line.y_m)).collect(),
+            records: self.read_table("trials.csv")?,
+            summary: self.read_json("summary.json")?,
+            timings: self.read_json("timings.json")?,
+        })
+    }
+
+    /// Lets `latest` beside the folder point at it, where the system has symbolic links.
+    ///
+    /// # Errors
+    /// When the link can't be made, or something else of that name is in the way.
+    pub fn link_latest(&self) -> Result<(), RunFolderError> {
+        let (Some(parent), Some(name)) = (self.path.parent(), self.path.file_name()) else { return Ok(()) };
+        let (link, partial) = (parent.join("latest"), parent.join(".latest.partial"));
+        if link.symlink_metadata().is_ok_and(|metadata| !metadata.is_symlink()) {
+            let in_the_way = std::io::Error::other("something that is not a link is in the way; move it");
+            return Err(RunFolderError::writing(link)(in_the_way));
+        }
+        let _ = fs::remove_file(&partial);
+        symlink(Path::new(name), &partial)
+            .and_then(|()| fs::rename(&partial, &link))
+            .map_err(RunFolderError::writing(link))
+    }
+
+    fn read(&self, file: &str) -> Result<String, RunFolderError> {
+        let path = self.path.join(file);
+        let mut text = String::new();
+        fs::File::open(&path)
+            .and_then(|file| file.take(MAX_FILE_BYTES).read_to_string(&mut text))
+            .map_err(|source| RunFolderError::Read { path, source })?;
+        Ok(text)
+    }
+
+    fn read_json<T: DeserializeOwned>(&self, file: &str) -> Result<T, RunFolderError> {
+        serde_json::from_str(&self.read(file)?).map_err(|error| self.damaged(file, &error))
+    }
+
+    fn read_table<T: DeserializeOwned>(&self, file: &str) -> Result<Vec<T>, RunFolderError> {
+        let text = self.read(file)?;
+        let lines = csv::Reader::from_reader(text.as_bytes()).into_deserialize().collect::<Result<_, _>>();
+        lines.map_err(|error| self.damaged(file, &error))
+    }
+
+    fn damaged(&self, file: &str, reason: &dyn std::fmt::Display) -> RunFolderError {
+        RunFolderError::Damaged { path: self.path.join(file), reason: reason.to_string() }
+    }
+}
+
+#[cfg(unix)]
+fn symlink(target: &Path, link: &Path) -> std::io::Result<()> {
+    std::os::unix::fs::symlink(target, link)
+}
+
+#[cfg(not(unix))]
+fn symlink(target: &Path, link: &Path) -> std::io::Result<()> {
+    fs::write(link, target.display().to_string())
+}
+
+fn to_csv<T: Serialize>(lines: impl IntoIterator<Item = T>) -> Result<Vec<u8>, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for line in lines {
+        writer.serialize(line)?;
+    }
+    writer.into_inner().map_err(|error| csv::Error::from(error.into_error()))
+}
+
+fn to_json<T: Serialize>(value: &T) -> Vec<u8> {
+    let mut json = serde_json::to_vec_pretty(value).expect("results are plain values");
+    json.push(b'\n');
+    json
+}
+
+/// Why a run folder can't be written or read.
+#[derive(Debug, Error)]
+pub enum RunFolderError {
+    /// Writing fails.
+    #[error("{} can't be written: {source}", path.display())]
+    Write {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// Reading fails.
+    #[error("{} can't be read: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// The folder holds no finished run.
+    #[error("{} holds no finished run: there is no manifest.json in it", path.display())]
+    NotARun {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A file is not what the program wrote.
+    #[error("{} is damaged or of another version: {reason}", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: String,
+    },
+    /// The scenario is not legal.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+}
+
+impl RunFolderError {
+    fn writing(path: PathBuf) -> impl FnOnce(std::io::Error) -> Self {
+        move |source| Self::Write { path, source }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::sample;
+
+    #[test]
+    fn results_read_back_as_written() {
+        let parent = tempfile::tempdir().expect("a temporary folder");
+        let results = sample::run().results;
+        let folder = RunFolder::create(parent.path(), "2026-01-02", "hall").expect("a new folder");
+        let look_times = vec![vec![Duration::from_millis(3)]; results.records.len()];
+        folder.write_results(&results, &look_times).expect("written");
+        let read = RunFolder::open(folder.path()).expect("a run").read_results().expect("readable");
+        assert!(read == results, "something changed on the way through the folder");
+    }
+
+    #[test]
+    fn a_second_run_of_the_day_gets_its_own_folder_and_latest_follows() {
+        let parent = tempfile::tempdir().expect("a temporary folder");
+        let create = || RunFolder::create(parent.path(), "2026-01-02", "hall").expect("a new folder");
+        let (first, second) = (create(), create());
+        assert_ne!(first.path(), second.path());
+        for folder in [first, second] {
+            folder.link_latest().expect("a link");
+            let target = parent.path().join("latest").canonicalize().expect("a target");
+            assert_eq!(target, folder.path().canonicalize().expect("a folder"));
+        }
+    }
+
+    #[test]
+    fn an_unfinished_or_damaged_folder_is_refused_by_name() {
+        let parent = tempfile::tempdir().expect("a temporary folder");
+        let folder = RunFolder::create(parent.path(), "2026-01-02", "hall").expect("a new folder");
+        assert!(matches!(RunFolder::open(folder.path()), Err(RunFolderError::NotARun { .. })));
+        folder.write_results(&sample::run().results, &[]).expect("written");
+        folder.write("trials.csv", b"row,trial\nnear,many\n").expect("written");
+        let error = folder.read_results().expect_err("damaged").to_string();
+        assert!(error.contains("trials.csv"), "{error}");
+    }
+}

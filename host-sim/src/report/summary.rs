@@ -1,0 +1,196 @@
+//! The figures of a run, row by row: what `summary.json` holds and the tables show. No wall times.
+
+use crate::monte_carlo::{Outcome, SuccessRate, TrialRecord};
+use crate::scenario::{Scenario, Start};
+use edgeloc::geometry::Point2;
+use serde::{Deserialize, Serialize};
+
+/// The paper's own success rate in simulation, n > 900 (section 5) [fraction].
+pub const PAPER_RATE: f64 = 0.9282;
+/// The 95 % Wilson interval of [`PAPER_RATE`] at the stated number of trials [fractions].
+pub const PAPER_INTERVAL: (f64, f64) = (0.909, 0.943);
+
+/// The figures of a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// Name of the scenario.
+    pub scenario: String,
+    /// Nodes of the map.
+    pub nodes: usize,
+    /// The map as learned, mean over its noise draws.
+    pub map: MapFacts,
+    /// Success rate of blind guessing: two of the nodes are right [fraction].
+    pub chance_rate: f64,
+    /// The paper's success rate [fraction].
+    pub paper_rate: f64,
+    /// Lower and upper end of its 95 % interval [fraction].
+    pub paper_interval: (f64, f64),
+    /// One entry a row, in the scenario's order.
+    pub rows: Vec<RowSummary>,
+}
+
+/// Size of a learned map.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct MapFacts {
+    /// Bytes of the database.
+    pub bytes: f64,
+    /// Segments in the model of a node.
+    pub segments_per_node: f64,
+}
+
+/// The figures of one row.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RowSummary {
+    /// Name of the row.
+    pub row: String,
+    /// Where its trials start.
+    pub start: Start,
+    /// Whether its histograms use polarity.
+    pub polarity: bool,
+    /// Trials.
+    pub trials: u64,
+    /// Trials that ended at one of the two nearest nodes.
+    pub successes: u64,
+    /// Successes per trial [fraction]; none without trials.
+    pub success_rate: Option<f64>,
+    /// Lower end of the 95 % Wilson interval [fraction].
+    pub success_rate_low: f64,
+    /// Upper end of the 95 % Wilson interval [fraction].
+    pub success_rate_high: f64,
+    /// Trials answered "I can't tell".
+    pub unknown: u64,
+    /// Trials that ended in an error of the localiser.
+    pub errors: u64,
+    /// Mean looks of a trial.
+    pub mean_looks: f64,
+    /// Median looks of a trial.
+    pub median_looks: f64,
+    /// Mean image segments of a look that entered the matching.
+    pub mean_segments_per_look: f64,
+    /// Mean distance from the true position to the nearest node [m].
+    pub mean_nearest_node_distance_m: f64,
+    /// Median distance from the true position to the answered node [m]; none without answers.
+    pub median_answer_distance_m: Option<f64>,
+}
+
+impl RowSummary {
+    /// The success rate with its interval.
+    #[must_use]
+    pub fn success(&self) -> SuccessRate {
+        SuccessRate { successes: self.successes, trials: self.trials }
+    }
+}
+
+impl Summary {
+    /// The figures of `records`, trials of `scenario` in a map of the given nodes and size.
+    #[must_use]
+    pub fn new(scenario: &Scenario, nodes: &[Point2], map: MapFacts, records: &[TrialRecord]) -> Self {
+        let rows = scenario.rows.iter().map(|row| {
+            let records = records.iter().filter(|record| record.row == row.name).collect::<Vec<_>>();
+            let success = SuccessRate::of(records.iter().map(|record| record.is_success));
+            let interval = success.success_interval();
+            let count = |outcome| records.iter().filter(|record| record.outcome == outcome).count() as u64;
+            let looks = records.iter().map(|record| f64::from(record.looks)).collect::<Vec<_>>();
+            let segments = records.iter().map(|record| f64::from(record.scene_segments)).sum::<f64>();
+            RowSummary {
+                row: row.name.clone(),
+                start: row.start,
+                polarity: row.polarity,
+                trials: success.trials,
+                successes: success.successes,
+                success_rate: success.rate(),
+                success_rate_low: interval.0,
+                success_rate_high: interval.1,
+                unknown: count(Outcome::Unknown),
+                errors: count(Outcome::Error),
+                mean_looks: mean(looks.iter().copied()),
+                median_looks: median(looks.clone()).unwrap_or(0.0),
+                mean_segments_per_look: segments / looks.iter().sum::<f64>().max(1.0),
+                mean_nearest_node_distance_m: mean(
+                    records.iter().map(|record| f64::from(record.nearest_node_distance_m)),
+                ),
+                median_answer_distance_m: median(
+                    records.iter().filter_map(|record| answer_distance_m(record, nodes)).collect(),
+                ),
+            }
+        });
+        Self {
+            scenario: scenario.name.clone(),
+            nodes: nodes.len(),
+            map,
+            chance_rate: (2.0 / nodes.len().max(1) as f64).min(1.0),
+            paper_rate: PAPER_RATE,
+            paper_interval: PAPER_INTERVAL,
+            rows: rows.collect(),
+        }
+    }
+}
+
+/// Distance from the true position to the answered node [m].
+#[must_use]
+pub fn answer_distance_m(record: &TrialRecord, nodes: &[Point2]) -> Option<f64> {
+    let answered = nodes.get(record.answered_node? as usize)?;
+    Some(f64::from(answered.distance(Point2::new(record.true_x_m, record.true_y_m))))
+}
+
+/// The `count` worst failures: errors first, then by distance from the truth to the answered node, then "can't tell".
+#[must_use]
+pub fn worst_trials<'r>(records: &'r [TrialRecord], nodes: &[Point2], count: usize) -> Vec<&'r TrialRecord> {
+    let badness = |record: &TrialRecord| match record.outcome {
+        Outcome::Error => f64::INFINITY,
+        Outcome::Localized => answer_distance_m(record, nodes).unwrap_or(0.0),
+        Outcome::Unknown => -1.0,
+    };
+    let mut failures = records.iter().filter(|record| !record.is_success).collect::<Vec<_>>();
+    failures.sort_by(|a, b| badness(b).total_cmp(&badness(a)));
+    failures.truncate(count);
+    failures
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
+    if count > 0.0 { sum / count } else { 0.0 }
+}
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    let (low, high) = (values.get(values.len().checked_sub(1)? / 2)?, values.get(values.len() / 2)?);
+    Some(f64::midpoint(*low, *high))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::sample;
+
+    #[test]
+    fn rows_are_summed_apart() {
+        let results = sample::run().results;
+        let rows = &results.summary.rows;
+        let trials = rows.iter().map(|row| row.trials).sum::<u64>();
+        assert_eq!((rows.len(), trials), (4, results.records.len() as u64));
+        assert!(rows[0].success_rate > rows[3].success_rate);
+    }
+
+    #[test]
+    fn a_run_without_trials_has_figures_too() {
+        let summary = Summary::new(&Scenario::default(), &[], MapFacts::default(), &[]);
+        assert_eq!((summary.rows[0].trials, summary.rows[0].success_rate), (0, None));
+        assert!(serde_json::to_string(&summary).is_ok_and(|json| !json.contains("NaN")));
+    }
+
+    #[test]
+    fn the_worst_trials_are_failures_farthest_first() {
+        let results = sample::run().results;
+        let worst = worst_trials(&results.records, &results.nodes, 3);
+        let distances = worst.iter().filter_map(|record| answer_distance_m(record, &results.nodes));
+        assert!(distances.collect::<Vec<_>>().is_sorted_by(|a, b| a >= b));
+        assert!(worst.len() == 3 && worst.iter().all(|record| !record.is_success));
+    }
+
+    #[test]
+    fn the_median_of_an_even_number_is_the_middle() {
+        assert_eq!(median(vec![4.0, 1.0, 2.0, 3.0]), Some(2.5));
+        assert_eq!(median(vec![]), None);
+    }
+}
