@@ -112,11 +112,9 @@ impl FloorPlan {
             .unwrap_or(1.0);
         let y = self.size_m.1 * self.px_per_m - 14.0;
         let end = 12.0 + length_m * self.px_per_m;
-        Group::new().add(super::drawing::line("axis", (12.0, y), (end, y))).add(super::drawing::text(
-            "start",
-            (end + 8.0, y + 6.0),
-            format!("{length_m} m"),
-        ))
+        Group::new()
+            .add(super::drawing::line("axis", (12.0, y), (end, y)))
+            .add(super::drawing::text("start", (end + 8.0, y + 6.0), format!("{length_m} m")).set("class", "scale"))
     }
 
     /// All edges from above as one path; equal ones (floor and ceiling, say) once.
