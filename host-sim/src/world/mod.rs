@@ -6,12 +6,15 @@ mod crease;
 pub mod file;
 pub mod import;
 mod mesh;
+mod coverage;
+mod free_space;
 mod occlusion;
 pub mod office;
 mod template;
 mod visibility;
 mod wireframe;
 
+pub use free_space::{FreeSpace, FreeSpaceError, FreeSpaceOptions};
 pub use occlusion::{Occluders, SAME_PLANE_M, STOP_SHORT_M};
 pub use visibility::ViewpointVisibility;
 pub use wireframe::{Surfaces, WireframeWorld};

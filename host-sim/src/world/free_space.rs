@@ -1,0 +1,506 @@
+//! Free space: where a round robot can be, as an occupancy grid of the one largest connected indoor region.
+//!
+//! A cell is *clear* when no surface within the robot's height comes nearer to its center than the robot's radius,
+//! counted by cells and rounded against the robot. Of the clear cells those are *indoors* that
+//! - are walled in: no way over clear cells leads out of the world (and there is floor below them, if the world models
+//!   its floor at all), or
+//! - lie between a floor and a ceiling, for buildings with an open door.
+//!
+//! Of the regions either rule gives, connected over the sides of their cells, the largest one is the free space. Floors
+//! and ceilings are surfaces less than 45 degrees from level, a floor within 10 cm of z = 0.
+
+use super::coverage::{Coverage, Grid, Slab};
+use super::{Surfaces, WireframeWorld};
+use crate::random::Stream;
+use edgeloc::geometry::{Point2, Point3};
+
+/// The most cells a grid may have, about 100 m by 100 m at 5 cm: bounds the memory that a world file can ask for.
+const MAX_CELL_COUNT: f64 = 4e6;
+
+/// How far from z = 0 a floor may lie [m].
+const FLOOR_TOLERANCE_M: f64 = 0.1;
+
+/// In place of a number, for a cell that is not free.
+const NOT_FREE: u32 = u32::MAX;
+
+/// What the robot needs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FreeSpaceOptions {
+    /// Radius of the robot [m], 0 to 5.
+    pub robot_radius_m: f32,
+    /// Heights above the floor between which it must not touch anything [m]. Carpets and doorsteps are lower.
+    pub slice_m: (f32, f32),
+    /// Side of a cell [m], 0.01 to 1.
+    pub cell_m: f32,
+}
+
+impl Default for FreeSpaceOptions {
+    /// A robot of 0.25 m radius with its camera at 1 m, on cells of 5 cm.
+    fn default() -> Self {
+        Self { robot_radius_m: 0.25, slice_m: (0.05, 1.15), cell_m: 0.05 }
+    }
+}
+
+/// The cells where a robot can stand; all can be reached from each other.
+#[derive(Debug, Clone)]
+pub struct FreeSpace {
+    grid: Grid,
+    /// Which cells of the grid are free.
+    cells: Vec<usize>,
+    /// For each cell of the grid its place in `cells`, or [`NOT_FREE`].
+    numbers: Vec<u32>,
+    options: FreeSpaceOptions,
+    rule: IndoorRule,
+    other_regions: Regions,
+}
+
+/// Which rule found the region.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum IndoorRule {
+    WalledIn,
+    FloorAndCeiling,
+}
+
+/// How many regions, and how many cells they have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+struct Regions {
+    region_count: usize,
+    cell_count: usize,
+}
+
+impl FreeSpace {
+    /// Finds the free space of a world.
+    ///
+    /// # Errors
+    /// When an option is out of range, the world has no surfaces or too large ones for the grid, or when nothing in it
+    /// is indoors and wide enough for the robot.
+    pub fn of(world: &WireframeWorld, options: &FreeSpaceOptions) -> Result<Self, FreeSpaceError> {
+        check(options)?;
+        let grid = grid_over(&world.surfaces, options)?;
+        let is_clear = clear_cells(&world.surfaces, &grid, options);
+        let (rule, mut regions) = indoor_regions(&world.surfaces, &grid, options, &is_clear);
+        if regions.is_empty() {
+            return Err(FreeSpaceError::NoRoom { world: world.name.clone(), robot_radius_m: options.robot_radius_m });
+        }
+        let largest = regions.iter().enumerate().max_by_key(|(index, cells)| (cells.len(), usize::MAX - index));
+        let mut cells = regions.swap_remove(largest.map_or(0, |(index, _)| index));
+        cells.sort_unstable();
+        let mut numbers = vec![NOT_FREE; grid.cell_count()];
+        for (number, &cell) in (0_u32..).zip(&cells) {
+            numbers[cell] = number;
+        }
+        let other_regions = Regions { region_count: regions.len(), cell_count: regions.iter().map(Vec::len).sum() };
+        Ok(Self { grid, cells, numbers, options: *options, rule, other_regions })
+    }
+
+    /// Whether the cell at a point of the floor is free.
+    #[must_use]
+    pub fn contains(&self, point: Point2) -> bool {
+        self.grid.cell_at(point).is_some_and(|cell| self.numbers[cell] != NOT_FREE)
+    }
+
+    /// Area of the free cells [m2].
+    #[must_use]
+    pub fn area_m2(&self) -> f64 {
+        self.area_of(self.cells.len())
+    }
+
+    /// Centers of the free cells, row by row from the south, in a row from the west.
+    pub fn cell_centers(&self) -> impl ExactSizeIterator<Item = Point2> + '_ {
+        self.cells.iter().map(|&cell| self.grid.center(cell))
+    }
+
+    /// A point uniform over the free cells.
+    pub fn sample(&self, stream: &mut Stream) -> Point2 {
+        let center = self.grid.center(self.cells[stream.index(self.cells.len())]);
+        let half = 0.5 * f64::from(self.options.cell_m);
+        let mut beside = |coordinate: f32| coordinate + stream.uniform(-half, half) as f32;
+        Point2::new(beside(center.x), beside(center.y))
+    }
+
+    /// Cells from west to east.
+    #[must_use]
+    pub const fn width(&self) -> usize {
+        self.grid.width
+    }
+
+    /// Cells from south to north.
+    #[must_use]
+    pub const fn height(&self) -> usize {
+        self.grid.height
+    }
+
+    /// South-west corner of the grid [m].
+    #[must_use]
+    pub fn origin(&self) -> Point2 {
+        Point2::new(self.grid.west as f32, self.grid.south as f32)
+    }
+
+    /// Side of a cell [m].
+    #[must_use]
+    pub const fn cell_m(&self) -> f32 {
+        self.options.cell_m
+    }
+
+    /// The options it was found with.
+    #[must_use]
+    pub const fn options(&self) -> &FreeSpaceOptions {
+        &self.options
+    }
+
+    /// Whether the cell `ix` from the west and `iy` from the south is free; cells outside of the grid are not.
+    #[must_use]
+    pub fn is_free(&self, ix: usize, iy: usize) -> bool {
+        ix < self.grid.width && iy < self.grid.height && self.numbers[iy * self.grid.width + ix] != NOT_FREE
+    }
+
+    /// Indoor regions that were left out because they are not connected to this one.
+    #[must_use]
+    pub const fn other_region_count(&self) -> usize {
+        self.other_regions.region_count
+    }
+
+    /// Their area [m2].
+    #[must_use]
+    pub fn other_regions_m2(&self) -> f64 {
+        self.area_of(self.other_regions.cell_count)
+    }
+
+    /// One line that says what was found, and how.
+    #[must_use]
+    pub fn describe(&self) -> String {
+        let rule = match self.rule {
+            IndoorRule::WalledIn => "walled in",
+            IndoorRule::FloorAndCeiling => "between a floor and a ceiling",
+        };
+        let FreeSpaceOptions { robot_radius_m, cell_m, .. } = self.options;
+        format!(
+            "{:.1} m2 of free space {rule}, for a robot of {robot_radius_m} m radius on cells of {cell_m} m; \
+             {} other indoor regions of together {:.1} m2 cannot be reached from it and are left out",
+            self.area_m2(),
+            self.other_region_count(),
+            self.other_regions_m2()
+        )
+    }
+
+    /// The cells next to a free cell with the way there in tenths of a cell; a step across a corner needs both cells
+    /// beside it free. Cells are numbered as in [`Self::cell_centers`].
+    pub(crate) fn neighbors(&self, cell: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
+        const STEPS: [(isize, isize, usize); 8] =
+            [(1, 0, 10), (-1, 0, 10), (0, 1, 10), (0, -1, 10), (1, 1, 14), (-1, 1, 14), (1, -1, 14), (-1, -1, 14)];
+        let at = self.cells[cell];
+        // The border of the grid is never free, so a step from a free cell stays inside.
+        let number =
+            move |dx: isize, dy: isize| self.numbers[at.wrapping_add_signed(dx + dy * self.grid.width as isize)];
+        let is_open = move |dx, dy| number(dx, dy) != NOT_FREE;
+        STEPS
+            .into_iter()
+            .filter(move |&(dx, dy, _)| is_open(dx, dy) && is_open(dx, 0) && is_open(0, dy))
+            .map(move |(dx, dy, tenths)| (number(dx, dy) as usize, tenths))
+    }
+
+    fn area_of(&self, cell_count: usize) -> f64 {
+        cell_count as f64 * f64::from(self.options.cell_m) * f64::from(self.options.cell_m)
+    }
+}
+
+fn check(options: &FreeSpaceOptions) -> Result<(), FreeSpaceError> {
+    let (low, high) = options.slice_m;
+    let checks = [
+        ((0.0..=5.0).contains(&options.robot_radius_m), "robot radius", "0 to 5 m"),
+        (low.is_finite() && high.is_finite() && low < high, "height slice", "a lower and a higher height"),
+        ((0.01..=1.0).contains(&options.cell_m), "cell size", "0.01 to 1 m"),
+    ];
+    match checks.into_iter().find(|(holds, _, _)| !holds) {
+        Some((_, name, range)) => Err(FreeSpaceError::Option { name, range }),
+        None => Ok(()),
+    }
+}
+
+/// A grid over all surfaces, with a border wider than the robot, from where the world's outside is flooded.
+fn grid_over(surfaces: &Surfaces, options: &FreeSpaceOptions) -> Result<Grid, FreeSpaceError> {
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for corners in triangles(surfaces) {
+        for corner in corners {
+            for (axis, coordinate) in [corner[0], corner[1]].into_iter().enumerate() {
+                low[axis] = low[axis].min(coordinate);
+                high[axis] = high[axis].max(coordinate);
+            }
+        }
+    }
+    if low[0] > high[0] {
+        return Err(FreeSpaceError::NoSurfaces);
+    }
+    let cell_m = f64::from(options.cell_m);
+    let border = f64::from(options.robot_radius_m) + 3.0 * cell_m;
+    let [width, height] = [0, 1].map(|axis| libm::ceil((high[axis] - low[axis] + 2.0 * border) / cell_m));
+    if width * height > MAX_CELL_COUNT {
+        let (width_m, depth_m) = (high[0] - low[0], high[1] - low[1]);
+        return Err(FreeSpaceError::TooLarge { width_m, depth_m, cell_m, max_cell_count: MAX_CELL_COUNT as usize });
+    }
+    Ok(Grid { west: low[0] - border, south: low[1] - border, cell_m, width: width as usize, height: height as usize })
+}
+
+/// The triangles of which all is finite, as coordinates.
+fn triangles(surfaces: &Surfaces) -> impl Iterator<Item = [[f64; 3]; 3]> + '_ {
+    let corner = |index: u32| {
+        let Point3 { x, y, z } = surfaces.vertices.get(index as usize).copied()?;
+        [x, y, z].iter().all(|c| c.is_finite()).then(|| [x, y, z].map(f64::from))
+    };
+    surfaces.triangles.iter().filter_map(move |&[a, b, c]| Some([corner(a)?, corner(b)?, corner(c)?]))
+}
+
+/// Cells from whose center no surface in the robot's height is nearer than its radius.
+fn clear_cells(surfaces: &Surfaces, grid: &Grid, options: &FreeSpaceOptions) -> Vec<bool> {
+    let slab = Slab { low: f64::from(options.slice_m.0), high: f64::from(options.slice_m.1) };
+    let mut touched = Coverage::new(grid);
+    for triangle in triangles(surfaces) {
+        touched.add(&triangle, slab);
+    }
+    let reach = f64::from(options.robot_radius_m) / grid.cell_m;
+    let steps = libm::ceil(reach + 0.5) as isize;
+    let is_near = |dx: isize, dy: isize| {
+        let gap = |steps: isize| (steps.abs() as f64 - 0.5).max(0.0);
+        gap(dx) * gap(dx) + gap(dy) * gap(dy) < reach * reach || (dx, dy) == (0, 0)
+    };
+    let disc: Vec<(isize, isize)> = (-steps..=steps)
+        .flat_map(|dy| (-steps..=steps).map(move |dx| (dx, dy)))
+        .filter(|&(dx, dy)| is_near(dx, dy))
+        .collect();
+    let mut is_clear = vec![true; grid.cell_count()];
+    for (cell, _) in touched.cells().into_iter().enumerate().filter(|(_, is_touched)| *is_touched) {
+        let (x, y) = ((cell % grid.width) as isize, (cell / grid.width) as isize);
+        for &(dx, dy) in &disc {
+            let (x, y) = (x + dx, y + dy);
+            if (0..grid.width as isize).contains(&x) && (0..grid.height as isize).contains(&y) {
+                is_clear[y as usize * grid.width + x as usize] = false;
+            }
+        }
+    }
+    is_clear
+}
+
+/// The indoor regions by the rule that gives the larger one.
+fn indoor_regions(
+    surfaces: &Surfaces,
+    grid: &Grid,
+    options: &FreeSpaceOptions,
+    is_clear: &[bool],
+) -> (IndoorRule, Vec<Vec<usize>>) {
+    let level_in = |low: f64, high: f64| {
+        let mut coverage = Coverage::new(grid);
+        for triangle in triangles(surfaces).filter(is_level) {
+            coverage.add(&triangle, Slab { low, high });
+        }
+        coverage.cells()
+    };
+    let has_floor = level_in(-FLOOR_TOLERANCE_M, FLOOR_TOLERANCE_M.min(f64::from(options.slice_m.1)));
+    let has_ceiling = level_in(f64::from(options.slice_m.1), f64::INFINITY);
+    let walled_in = walled_in_cells(grid, is_clear);
+    let walled_in_count = walled_in.iter().filter(|&&is_in| is_in).count();
+    let with_floor = both(&walled_in, &has_floor);
+    let models_floor = 2 * with_floor.iter().filter(|&&is_in| is_in).count() > walled_in_count;
+    let walled_in = regions(grid, if models_floor { &with_floor } else { &walled_in });
+    let covered = regions(grid, &both(is_clear, &both(&has_floor, &has_ceiling)));
+    let largest = |regions: &[Vec<usize>]| regions.iter().map(Vec::len).max().unwrap_or(0);
+    if largest(&covered) > largest(&walled_in) {
+        (IndoorRule::FloorAndCeiling, covered)
+    } else {
+        (IndoorRule::WalledIn, walled_in)
+    }
+}
+
+/// Clear cells that are not connected to the border of the grid.
+fn walled_in_cells(grid: &Grid, is_clear: &[bool]) -> Vec<bool> {
+    let mut is_in = is_clear.to_vec();
+    for region in regions(grid, is_clear) {
+        if region.iter().any(|&cell| grid.is_on_border(cell)) {
+            for cell in region {
+                is_in[cell] = false;
+            }
+        }
+    }
+    is_in
+}
+
+/// Regions of cells connected over their sides, in the order of their first cell.
+fn regions(grid: &Grid, is_member: &[bool]) -> Vec<Vec<usize>> {
+    let mut is_new = is_member.to_vec();
+    let mut regions = Vec::new();
+    for first in 0..is_member.len() {
+        if !is_new[first] {
+            continue;
+        }
+        is_new[first] = false;
+        let mut region = vec![first];
+        let mut reached = 0;
+        while let Some(&cell) = region.get(reached) {
+            reached += 1;
+            for beside in grid.beside(cell).into_iter().flatten() {
+                if is_new[beside] {
+                    is_new[beside] = false;
+                    region.push(beside);
+                }
+            }
+        }
+        regions.push(region);
+    }
+    regions
+}
+
+fn both(a: &[bool], b: &[bool]) -> Vec<bool> {
+    a.iter().zip(b).map(|(&a, &b)| a && b).collect()
+}
+
+/// Whether a triangle is less than 45 degrees from level.
+fn is_level([a, b, c]: &[[f64; 3]; 3]) -> bool {
+    let [u, v] = [b, c].map(|corner| [0, 1, 2].map(|axis| corner[axis] - a[axis]));
+    let normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+    normal[2] * normal[2] > normal[0] * normal[0] + normal[1] * normal[1]
+}
+
+/// Why a world has no free space.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FreeSpaceError {
+    /// An option is out of range.
+    #[error("the {name} of the free space is out of range; give {range}")]
+    Option {
+        /// Which one.
+        name: &'static str,
+        /// What it may be.
+        range: &'static str,
+    },
+    /// There is nothing to stand on or to bump into.
+    #[error("the world has no surfaces, so where a robot can stand is unknown; import a model with surfaces")]
+    NoSurfaces,
+    /// The grid would be too large.
+    #[error(
+        "the world's surfaces extend over {width_m:.0} m x {depth_m:.0} m, more than {max_cell_count} cells of \
+         {cell_m} m; leave out what is far from the building, check the unit of length, or ask for larger cells"
+    )]
+    TooLarge {
+        /// Extent along x [m].
+        width_m: f64,
+        /// Extent along y [m].
+        depth_m: f64,
+        /// Side of a cell [m].
+        cell_m: f64,
+        /// The most cells there may be.
+        max_cell_count: usize,
+    },
+    /// Nothing is indoors and free.
+    #[error(
+        "the world {world:?} has no indoor place for a robot of {robot_radius_m} m radius: nothing is walled in, or \
+         lies between a floor at z = 0 and a ceiling; check the unit, that z points up and that the floor is at \
+         z = 0, or ask for a smaller robot"
+    )]
+    NoRoom {
+        /// Name of the world.
+        world: String,
+        /// Radius asked for [m].
+        robot_radius_m: f32,
+    },
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::template::{Placement, Template};
+
+    /// A room of 4 m x 3 m from the origin, with walls 0.1 m thick, and a hole of the given width in its east wall.
+    fn room(hole_m: f32, build: impl FnOnce(&mut Template)) -> WireframeWorld {
+        let mut room = Template::new("room");
+        for z in [0.0, 2.5] {
+            room.add_surface([[-0.1, -0.1, z], [4.1, -0.1, z], [4.1, 3.1, z], [-0.1, 3.1, z]]);
+        }
+        room.add_solid([-0.1, -0.1, 0.0], [4.1, 0.0, 2.5]);
+        room.add_solid([-0.1, 3.0, 0.0], [4.1, 3.1, 2.5]);
+        room.add_solid([-0.1, 0.0, 0.0], [0.0, 3.0, 2.5]);
+        room.add_solid([4.0, 0.0, 0.0], [4.1, 1.5 - 0.5 * hole_m, 2.5]);
+        room.add_solid([4.0, 1.5 + 0.5 * hole_m, 0.0], [4.1, 3.0, 2.5]);
+        build(&mut room);
+        let mut world = WireframeWorld::default();
+        room.place(&Placement::at(0.0, 0.0, 0.0), &mut world);
+        world
+    }
+
+    fn free(world: &WireframeWorld) -> Result<FreeSpace, FreeSpaceError> {
+        FreeSpace::of(world, &FreeSpaceOptions::default())
+    }
+
+    #[test]
+    fn a_bare_room_is_free_but_for_the_robots_radius_at_the_walls() {
+        let space = free(&room(0.0, |_| {})).expect("a room");
+        // 3.5 m x 2.5 m, less up to a cell on each side.
+        assert!((8.1..=8.75).contains(&space.area_m2()), "{}", space.describe());
+        assert!(space.contains(Point2::new(2.0, 1.5)) && space.contains(Point2::new(0.35, 0.35)));
+        for outside in [(0.2, 1.5), (-0.5, 1.5), (5.0, 1.5), (f32::NAN, 1.5), (1e30, 1.5)] {
+            assert!(!space.contains(Point2::new(outside.0, outside.1)), "{outside:?}");
+        }
+    }
+
+    #[test]
+    fn no_surface_within_the_slice_comes_nearer_than_the_radius() {
+        let table = [[1.0, 1.0, 0.7], [2.0, 1.8, 0.75]];
+        let space = free(&room(0.0, |room| room.add_solid(table[0], table[1]))).expect("a room");
+        for center in space.cell_centers() {
+            let to_table = center.distance(Point2::new(center.x.clamp(1.0, 2.0), center.y.clamp(1.0, 1.8)));
+            let to_wall = center.x.min(4.0 - center.x).min(center.y).min(3.0 - center.y);
+            assert!(to_table.min(to_wall) >= 0.25 - 1e-4, "{center:?}");
+        }
+        assert!(!space.contains(Point2::new(1.5, 1.4)));
+    }
+
+    #[test]
+    fn carpets_and_lamps_are_no_obstacles() {
+        let bare = free(&room(0.0, |_| {})).expect("a room").area_m2();
+        let furnished = room(0.0, |room| {
+            room.add_solid([1.0, 1.0, 0.0], [2.0, 2.0, 0.02]);
+            room.add_solid([1.0, 1.0, 2.2], [2.0, 2.0, 2.4]);
+        });
+        assert!((free(&furnished).expect("a room").area_m2() - bare).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_building_with_an_open_door_is_found_by_its_floor_and_ceiling() {
+        let space = free(&room(0.9, |_| {})).expect("a room");
+        assert!(space.area_m2() > 8.0 && space.describe().contains("between a floor and a ceiling"));
+        assert!(!space.contains(Point2::new(4.5, 1.5)));
+    }
+
+    #[test]
+    fn the_smaller_of_two_rooms_is_left_out_and_stated() {
+        let world = room(0.0, |room| room.add_solid([2.5, 0.0, 0.0], [2.6, 3.0, 2.5]));
+        let space = free(&world).expect("a room");
+        assert_eq!(space.other_region_count(), 1);
+        assert!(space.contains(Point2::new(1.0, 1.5)) && !space.contains(Point2::new(3.3, 1.5)));
+        assert!((1.9..2.3).contains(&space.other_regions_m2()), "{}", space.describe());
+    }
+
+    #[test]
+    fn samples_fill_the_free_cells_evenly() {
+        let space = free(&room(0.0, |_| {})).expect("a room");
+        let mut stream = Stream::new(1, "test", 0, 0);
+        let samples: Vec<Point2> = (0..20_000).map(|_| space.sample(&mut stream)).collect();
+        assert!(samples.iter().all(|&sample| space.contains(sample)));
+        let west = samples.iter().filter(|sample| sample.x < 2.0).count();
+        assert!((9_700..10_300).contains(&west), "{west}");
+    }
+
+    #[test]
+    fn worlds_without_room_or_of_absurd_size_are_refused_with_a_remedy() {
+        let error = |world: &WireframeWorld| free(world).expect_err("no room").to_string();
+        assert!(error(&WireframeWorld::default()).contains("no surfaces"));
+        let narrow = room(0.0, |room| {
+            (0..8).for_each(|wall| room.add_solid([wall as f32 * 0.5, 0.0, 0.0], [wall as f32 * 0.5 + 0.1, 3.0, 2.5]))
+        });
+        assert!(error(&narrow).contains("smaller robot"));
+        let mut far = room(0.0, |_| {});
+        far.surfaces.vertices[0].x = -3e30;
+        assert!(error(&far).contains("larger cells"));
+        far.surfaces.vertices[0].x = f32::NAN;
+        assert!(free(&far).is_ok());
+        let coarse = FreeSpaceOptions { cell_m: 0.0, ..FreeSpaceOptions::default() };
+        assert!(FreeSpace::of(&far, &coarse).expect_err("bad").to_string().contains("cell size"));
+    }
+}
