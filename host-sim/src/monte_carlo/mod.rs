@@ -1,7 +1,16 @@
 //! Kidnapped-robot trials: a robot is put down somewhere, looks around and says where it is.
 
+mod looks;
 mod record;
+mod runner;
+mod site;
+mod start;
 mod statistics;
+mod trial;
 
 pub use record::{Outcome, TrialRecord};
+pub use runner::{RunError, RunOutcome, replay, run};
+pub use site::{Site, SiteError};
+pub use start::{TruePose, draw_start};
 pub use statistics::{SuccessRate, success_interval};
+pub use trial::LookEvent;

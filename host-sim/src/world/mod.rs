@@ -2,12 +2,12 @@
 //!
 //! World frame: metres, z up, the floor a robot drives on at z = 0.
 
+mod coverage;
 mod crease;
 pub mod file;
+mod free_space;
 pub mod import;
 mod mesh;
-mod coverage;
-mod free_space;
 mod occlusion;
 pub mod office;
 mod template;

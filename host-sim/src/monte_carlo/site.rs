@@ -1,0 +1,76 @@
+//! What all trials of a run share: the building, the nodes in it and what a noise-free robot saw from them.
+
+use crate::learning::{self, NodeViews, PlaceNodesError};
+use crate::scenario::Scenario;
+use crate::world::{FreeSpace, FreeSpaceError, FreeSpaceOptions, Occluders, ViewpointVisibility, WireframeWorld};
+use edgeloc::database::WriteError;
+use edgeloc::geometry::{Point2, Point3, StereoRig};
+
+/// A building made ready for learning and trials.
+#[derive(Debug)]
+pub struct Site {
+    /// The building.
+    pub world: WireframeWorld,
+    /// Its surfaces, ready for visibility rays.
+    pub occluders: Occluders,
+    /// Where the robot can stand.
+    pub free_space: FreeSpace,
+    /// The robot's stereo rig.
+    pub rig: StereoRig,
+    /// Where the nodes are, world frame [m].
+    pub nodes: Vec<Point2>,
+    node_views: Vec<NodeViews>,
+}
+
+impl Site {
+    /// Finds the free space of `world`, places the scenario's nodes in it and looks around from each, without noise.
+    ///
+    /// # Errors
+    /// When there is no free space, or not enough for the nodes.
+    pub fn prepare(world: WireframeWorld, scenario: &Scenario) -> Result<Self, SiteError> {
+        let rig = scenario.rig.stereo_rig().map_err(SiteError::Rig)?;
+        let occluders = Occluders::new(&world.surfaces);
+        let free_space = FreeSpace::of(&world, &FreeSpaceOptions::default())?;
+        let nodes = learning::place_nodes(&free_space, usize::from(scenario.learning.nodes), scenario.seed)?;
+        let node_views = NodeViews::observe_all(&rig, &world, &occluders, &nodes, scenario.learning.views);
+        Ok(Self { world, occluders, free_space, rig, nodes, node_views })
+    }
+
+    /// Learns the map, with the `map_index`-th draw of the uncertainty sources: the bytes of a topological database.
+    ///
+    /// # Errors
+    /// When what was learned does not fit the database format.
+    pub fn learn_map(&self, scenario: &Scenario, map_index: u32) -> Result<Vec<u8>, WriteError> {
+        learning::learn(&self.rig, &self.node_views, &scenario.uncertainty, scenario.seed, u64::from(map_index))
+    }
+
+    /// What can be seen from `position` at camera height.
+    #[must_use]
+    pub fn viewpoint(&self, position: Point2) -> ViewpointVisibility<'_> {
+        let eye = Point3::new(position.x, position.y, self.rig.camera_height_m);
+        ViewpointVisibility::new(&self.world, &self.occluders, eye)
+    }
+
+    /// The two nodes nearest to `position`, the nearest first; in a site of one node, that node twice.
+    #[must_use]
+    pub fn two_nearest_nodes(&self, position: Point2) -> [u32; 2] {
+        let mut by_distance: Vec<u32> = (0..self.nodes.len() as u32).collect();
+        let distance = |node: &u32| self.nodes[*node as usize].distance(position);
+        by_distance.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+        [by_distance[0], by_distance[by_distance.len().min(2) - 1]]
+    }
+}
+
+/// Why a building can't be made ready.
+#[derive(Debug, thiserror::Error)]
+pub enum SiteError {
+    /// The rig makes no sense.
+    #[error("[rig] {0}")]
+    Rig(String),
+    /// The robot can stand nowhere.
+    #[error(transparent)]
+    FreeSpace(#[from] FreeSpaceError),
+    /// The nodes can't be placed.
+    #[error(transparent)]
+    Placement(#[from] PlaceNodesError),
+}

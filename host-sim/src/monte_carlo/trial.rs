@@ -1,0 +1,141 @@
+//! One kidnapped-robot trial, from a random pose to a decision. It reads like the paper's Fig. 1(a).
+
+use super::looks::Looks;
+use super::{Outcome, Site, TrialRecord, TruePose};
+use crate::scenario::{Row, Scenario};
+use edgeloc::database::{NodeId, TopologicalDatabase};
+use edgeloc::geometry::{Heading, Scene, Segment2};
+use edgeloc::localize::{Decision, HeadingPrior, Localizer, Look, Motion, ObserveError};
+use std::time::{Duration, Instant};
+
+/// What happened at one look, for those who watch a trial.
+#[derive(Debug)]
+pub struct LookEvent<'a> {
+    /// True heading of the optical axis.
+    pub heading: Heading,
+    /// The segments that the robot saw.
+    pub scene: &'a [Segment2],
+    /// Which nodes were candidates before this look.
+    pub was_candidate: &'a [bool],
+    /// The localiser after the look.
+    pub localizer: &'a Localizer<'a>,
+    /// Its answer.
+    pub decision: &'a Result<Decision, ObserveError>,
+    /// Wall time of the localiser.
+    pub localizer_time: Duration,
+}
+
+/// One attempt to localise a robot that was put down at a pose.
+#[derive(Debug)]
+pub(super) struct Trial<'s> {
+    pub(super) site: &'s Site,
+    pub(super) scenario: &'s Scenario,
+    pub(super) row: &'s Row,
+    pub(super) trial: u32,
+    pub(super) map: u32,
+    pub(super) start: TruePose,
+}
+
+impl Trial<'_> {
+    /// Lets the robot look around until the localiser decides; tells `watch` of every look.
+    pub(super) fn run(
+        &self,
+        database: TopologicalDatabase<'_>,
+        memory: &mut [u64],
+        looks: &mut Looks<'_>,
+        mut watch: impl FnMut(&LookEvent<'_>),
+    ) -> TrialRecord {
+        let mut record = self.record_at_start();
+        let config = self.scenario.localizer.localizer_config(self.row.polarity);
+        let mut localizer =
+            Localizer::new(database, &config, memory).expect("a checked scenario and memory of the stated length");
+        let (mut heading, mut motion) = (self.start.heading, None);
+        loop {
+            let was_candidate: Vec<bool> =
+                localizer.candidates().scores().iter().map(|node| node.is_candidate()).collect();
+            let scene = looks.scene(record.looks as usize, heading);
+
+            let started = Instant::now();
+            let decision = localizer.observe(&Look {
+                heading: Some(HeadingPrior::exact(heading)),
+                motion_since_last: motion,
+                scene: Scene::new(scene),
+            });
+            let localizer_time = started.elapsed();
+
+            record.looks += 1;
+            record.scene_segments += localizer.scene_segment_count() as u32;
+            watch(&LookEvent {
+                heading,
+                scene,
+                was_candidate: &was_candidate,
+                localizer: &localizer,
+                decision: &decision,
+                localizer_time,
+            });
+            match decision {
+                Ok(Decision::LookAgain { turn }) => {
+                    heading = heading.turned(turn).expect("a checked scenario turns by a finite angle");
+                    motion = Some(Motion::exact_turn(turn));
+                }
+                last => {
+                    self.record_end(&mut record, &last, &localizer, &was_candidate);
+                    return record;
+                }
+            }
+        }
+    }
+
+    fn record_at_start(&self) -> TrialRecord {
+        let position = self.start.position;
+        let [nearest_node, second_nearest_node] = self.site.two_nearest_nodes(position);
+        TrialRecord {
+            row: self.row.name.clone(),
+            trial: self.trial,
+            map: self.map,
+            true_x_m: position.x,
+            true_y_m: position.y,
+            true_heading_deg: self.start.heading.angle().degrees(),
+            nearest_node,
+            second_nearest_node,
+            nearest_node_distance_m: self.site.nodes[nearest_node as usize].distance(position),
+            outcome: Outcome::Error,
+            answered_node: None,
+            is_success: false,
+            looks: 0,
+            scene_segments: 0,
+            leader_score: 0.0,
+            runner_up_score: 0.0,
+            truth_score: None,
+        }
+    }
+
+    fn record_end(
+        &self,
+        record: &mut TrialRecord,
+        decision: &Result<Decision, ObserveError>,
+        localizer: &Localizer<'_>,
+        was_candidate: &[bool],
+    ) {
+        match decision {
+            Ok(Decision::Localized(localized)) => {
+                record.outcome = Outcome::Localized;
+                record.answered_node = Some(localized.node.0);
+            }
+            Ok(_) => record.outcome = Outcome::Unknown,
+            Err(_) => record.outcome = Outcome::Error,
+        }
+        let nearest = [record.nearest_node, record.second_nearest_node];
+        record.is_success = record.answered_node.is_some_and(|node| nearest.contains(&node));
+
+        let scores = localizer.candidates().scores();
+        let leader = localizer.candidates().leading_node().map(|(node, _)| node);
+        let score_of = |node: u32| scores[node as usize].as_f64();
+        let in_last_look = (0..scores.len() as u32).filter(|node| was_candidate[*node as usize]);
+        record.leader_score = leader.map_or(0.0, |node| score_of(node.0));
+        record.runner_up_score =
+            in_last_look.filter(|node| Some(NodeId(*node)) != leader).map(score_of).fold(0.0, f64::max);
+        record.truth_score =
+            nearest.into_iter().filter(|node| was_candidate[*node as usize]).map(score_of).reduce(f64::max);
+    }
+}
