@@ -1,1 +1,3 @@
-//! benches
+//! What the benchmarks measure: declared workloads, each with the answer that it must give before it is timed.
+
+pub mod workloads;

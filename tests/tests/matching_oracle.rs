@@ -1,28 +1,19 @@
 //! Coefficients and view scores of the fixed-point kernels against their naive twins.
 
 use edgeloc::geometry::{Point2, Polarity, Segment2};
-use edgeloc::matching::{BinPair, LANES, Panel, PanelRow, RootRows, score_view};
-use edgeloc::pgh::{DistanceKind, HistogramBuilder, Line, PghShape};
+use edgeloc::pgh::{DistanceKind, PghShape};
+use edgeloc_tests::matcher::{MatcherMemory, lines};
 use edgeloc_tests::oracle::{self, NaiveSegment};
 use edgeloc_tests::strategies::{fixed_cases, interpolated_shape, matched_scene};
 use proptest::prelude::*;
 
 /// The view score as the localiser computes it.
 fn fast_score(shape: &PghShape, scene: &[Segment2], view: &[Segment2]) -> f64 {
-    let lines = |segments: &[Segment2]| -> Vec<Line> {
-        segments.iter().zip(0..).map(|(segment, order)| Line::new(segment, order, shape)).collect()
-    };
-    let (scene_lines, view_lines) = (lines(scene), lines(view));
-    let mut masses = vec![0; HistogramBuilder::memory_len(shape)];
-    let mut builder = HistogramBuilder::new(shape, &mut masses).expect("memory of the length asked for");
-    let mut pairs =
-        vec![BinPair { index: 0, roots: [0; 2] }; RootRows::pairs_len(scene_lines.len(), shape.bin_count())];
-    let (mut ends, mut best) = (vec![0; scene_lines.len()], vec![0; scene_lines.len()]);
-    let mut rows = RootRows::new(&mut pairs, &mut ends);
-    rows.rebuild(&mut builder, &scene_lines).expect("room for all");
-    let mut panel_rows = vec![PanelRow { roots: [[0; 2]; LANES] }; Panel::rows_len(shape.bin_count())];
-    let mut panel = Panel::new(&mut panel_rows);
-    score_view(&scene_lines, &rows, &view_lines, &mut builder, &mut panel, &mut best).as_f64()
+    let (scene, view) = (lines(shape, scene), lines(shape, view));
+    let mut memory = MatcherMemory::new(shape, scene.len());
+    let mut matcher = memory.matcher();
+    matcher.describe(&scene);
+    matcher.score(&scene, &view).as_f64()
 }
 
 fn naive_score(shape: &PghShape, scene: &[Segment2], view: &[Segment2]) -> f64 {

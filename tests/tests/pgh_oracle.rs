@@ -5,7 +5,8 @@
 //! square roots, which magnify slivers: there the worst case is far from the typical one, and both are bounded.
 
 use edgeloc::geometry::{Point2, Polarity, Segment2};
-use edgeloc::pgh::{DistanceKind, HistogramBuilder, Line, PghShape};
+use edgeloc::pgh::{DistanceKind, HistogramBuilder, PghShape};
+use edgeloc_tests::matcher::lines;
 use edgeloc_tests::oracle::{self, CharacterMap, Histogram, NaiveSegment, bhattacharyya_coefficient};
 use edgeloc_tests::strategies::{fixed_cases, interpolated_shape, matched_scene, segment};
 use proptest::collection::vec;
@@ -20,7 +21,7 @@ const MEAN_COEFFICIENT_ERROR: f64 = 2.5e-4;
 
 /// The fast histogram of each segment, squared back from its root form.
 fn fast_histograms(shape: &PghShape, segments: &[Segment2]) -> Vec<Histogram> {
-    let lines: Vec<Line> = segments.iter().zip(0..).map(|(segment, order)| Line::new(segment, order, shape)).collect();
+    let lines = lines(shape, segments);
     let mut memory = vec![0; HistogramBuilder::memory_len(shape)];
     let mut builder = HistogramBuilder::new(shape, &mut memory).expect("memory of the length asked for");
     let (distance_bins, angle_bins) = (usize::from(shape.distance_bins), usize::from(shape.angle_bins));

@@ -1,0 +1,136 @@
+//! The workloads, from nothing to pathological, each with its expected answer.
+//!
+//! The answers are exact integers, the same on every machine and with every kernel: a benchmark that computes something
+//! else is not faster but wrong. They change only when the kernels' arithmetic does, on purpose.
+
+use edgeloc::geometry::{Angle, Heading, Point2, Polarity, Segment2, StereoRig};
+use edgeloc::localize::LocalizerConfig;
+use edgeloc_tests::oracle::{NaiveSegment, prepare_scene};
+use edgeloc_tests::tiny_worlds::{all_seeing_node, all_seeing_scene, database_bytes, random_positions, random_room};
+
+/// The rig of all workloads.
+pub const RIG: StereoRig = StereoRig::reference();
+
+/// Boxes in the room that the scenes are taken from: 636 edges, about what a node of an office knows.
+const BOXES: usize = 52;
+
+/// A scene and a view to match it with, as they enter the matching.
+#[derive(Debug, Clone)]
+pub struct Workload {
+    /// A short name.
+    pub name: &'static str,
+    /// The scene's segments.
+    pub scene: Vec<Segment2>,
+    /// The view's segments.
+    pub view: Vec<Segment2>,
+    /// Pairs of bins, at least one of them not empty, that the scene's histograms have in all.
+    pub expected_bin_pairs: usize,
+    /// Score of the scene against the view, times 2^30.
+    pub expected_score_q30: i32,
+}
+
+/// One look at a whole map.
+#[derive(Debug, Clone)]
+pub struct LookWorkload {
+    /// A short name.
+    pub name: &'static str,
+    /// The map's bytes.
+    pub database: Vec<u8>,
+    /// Nodes in the map.
+    pub nodes: usize,
+    /// Heading of the look.
+    pub heading: Heading,
+    /// The segments of the look.
+    pub scene: Vec<Segment2>,
+    /// The node that leads after the look.
+    pub expected_leader: u32,
+    /// Its score, times 2^30.
+    pub expected_score_q30: i64,
+    /// Candidates left, the leader among them.
+    pub expected_candidates: usize,
+}
+
+/// Every scene with its view, published settings.
+#[must_use]
+pub fn scenes() -> Vec<Workload> {
+    let workload = |name, scene: Vec<Segment2>, view: Vec<Segment2>, expected_bin_pairs, expected_score_q30| Workload {
+        name,
+        scene,
+        view,
+        expected_bin_pairs,
+        expected_score_q30,
+    };
+    vec![
+        workload("empty", Vec::new(), seen_from(VIEWPOINT, 112), 0, 0),
+        workload("bare_wall", seen_from(BESIDE, 3), seen_from(VIEWPOINT, 112), 13, 314_893_639),
+        // The mean of an office: 112 segments a look.
+        workload("typical", seen_from(BESIDE, 112), seen_from(VIEWPOINT, 112), 6021, 959_362_218),
+        // 95 % of looks have 240 segments or fewer; the localiser keeps the longest 150.
+        workload("crowded", longest(&seen_from(BESIDE, 240)), longest(&seen_from(VIEWPOINT, 240)), 8861, 985_792_185),
+        // Everything falls into the same angle bin, every histogram is like its neighbour.
+        workload("all_parallel", parallel(150), parallel(150), 1592, 1_073_736_433),
+    ]
+}
+
+/// One look at a small and at the reference number of nodes.
+#[must_use]
+pub fn looks() -> Vec<LookWorkload> {
+    let world = random_room(1, BOXES);
+    let look = |name, nodes: usize, expected_leader, expected_score_q30, expected_candidates| {
+        let models: Vec<_> =
+            random_positions(4, nodes).into_iter().map(|position| all_seeing_node(&world, &RIG, position)).collect();
+        LookWorkload {
+            name,
+            database: database_bytes(&RIG, &models),
+            nodes,
+            heading: heading(),
+            scene: seen_from(BESIDE, 112),
+            expected_leader,
+            expected_score_q30,
+            expected_candidates,
+        }
+    };
+    vec![look("8_nodes", 8, 7, 916_666_275, 4), look("72_nodes", 72, 12, 937_128_815, 32)]
+}
+
+/// Where the view was learned, and where the scene is seen from: 0.3 m apart.
+const VIEWPOINT: Point2 = Point2::new(6.8, 4.6);
+const BESIDE: Point2 = Point2::new(7.0, 4.8);
+
+fn heading() -> Heading {
+    Heading::new(Angle::from_degrees(-150.0)).expect("finite")
+}
+
+/// The first `count` segments that enter the matching, each cut to its middle third as fragmented edges are: their median
+/// length is that of an office, about 29 px.
+fn seen_from(position: Point2, count: usize) -> Vec<Segment2> {
+    let world = random_room(1, BOXES);
+    let middle_third = |segment: Segment2| {
+        let (start, end) = (segment.start(), segment.end());
+        Segment2::new(start.lerp(end, 1.0 / 3.0), start.lerp(end, 2.0 / 3.0), segment.polarity()).ok()
+    };
+    let segments: Vec<Segment2> =
+        all_seeing_scene(&world, &RIG, position, heading()).into_iter().filter_map(middle_third).collect();
+    let everything = LocalizerConfig { max_segments: 1024, ..LocalizerConfig::paper() };
+    let entering: Vec<Segment2> = kept(&segments, &everything);
+    assert!(entering.len() >= count, "{} segments enter, {count} are needed", entering.len());
+    entering[..count].to_vec()
+}
+
+fn longest(segments: &[Segment2]) -> Vec<Segment2> {
+    kept(segments, &LocalizerConfig::paper())
+}
+
+fn kept(segments: &[Segment2], config: &LocalizerConfig) -> Vec<Segment2> {
+    let naive: Vec<NaiveSegment> = segments.iter().map(NaiveSegment::from).collect();
+    prepare_scene(&naive, config).into_iter().map(|index| segments[index]).collect()
+}
+
+/// Upright segments of 200 px, 4 px apart.
+fn parallel(count: u16) -> Vec<Segment2> {
+    let upright = |index: u16| {
+        let x = 20.0 + 4.0 * f32::from(index);
+        Segment2::new(Point2::new(x, 140.0), Point2::new(x, 340.0), Polarity::LeftBrighter).expect("valid")
+    };
+    (0..count).map(upright).collect()
+}
