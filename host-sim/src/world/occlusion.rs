@@ -26,7 +26,7 @@ const SEAM: f32 = 2e-6;
 const BOX_MARGIN_M: f32 = 1e-4;
 
 /// Most triangles in a leaf, except where all centres coincide.
-const LEAF_TRIANGLES: usize = 4;
+const LEAF_TRIANGLES: usize = 3;
 
 /// Candidate split planes along the longest side of a node.
 const SPLIT_BINS: usize = 12;
@@ -73,9 +73,7 @@ impl Occluders {
         let mut waiting = [0_u32; 2 * SAH_DEPTH];
         let mut waiting_count = 0;
         let mut current = self.nodes.first()?;
-        if !current.meets(&ray) {
-            return None;
-        }
+        current.entry(&ray)?;
         loop {
             if current.triangle_count > 0 {
                 let first = current.first as usize;
@@ -85,22 +83,21 @@ impl Occluders {
                 }
             } else {
                 let left = current.first as usize;
-                match (self.nodes[left].meets(&ray), self.nodes[left + 1].meets(&ray)) {
-                    (true, true) => {
-                        waiting[waiting_count] = left as u32 + 1;
+                let (left_entry, right_entry) = (self.nodes[left].entry(&ray), self.nodes[left + 1].entry(&ray));
+                let next = match (left_entry, right_entry) {
+                    (Some(left_entry), Some(right_entry)) => {
+                        let is_left_nearer = left_entry <= right_entry;
+                        waiting[waiting_count] = (left + usize::from(is_left_nearer)) as u32;
                         waiting_count += 1;
-                        current = &self.nodes[left];
-                        continue;
+                        Some(left + usize::from(!is_left_nearer))
                     }
-                    (true, false) => {
-                        current = &self.nodes[left];
-                        continue;
-                    }
-                    (false, true) => {
-                        current = &self.nodes[left + 1];
-                        continue;
-                    }
-                    (false, false) => {}
+                    (Some(_), None) => Some(left),
+                    (None, Some(_)) => Some(left + 1),
+                    (None, None) => None,
+                };
+                if let Some(next) = next {
+                    current = &self.nodes[next];
+                    continue;
                 }
             }
             if waiting_count == 0 {
@@ -139,7 +136,9 @@ impl Ray {
             return None;
         }
         let direction = [to.x - from.x, to.y - from.y, to.z - from.z];
-        Some(Self { origin: array(from), direction, inverse: direction.map(|d| 1.0 / d), reach })
+        // Along an axis it does not move on, a ray counts as moving very slowly: zero times infinity would be NaN.
+        let inverse = direction.map(|d| if d.abs() < 1e-30 { 1e30 } else { 1.0 / d });
+        Some(Self { origin: array(from), direction, inverse, reach })
     }
 }
 
@@ -209,18 +208,27 @@ struct BoxNode {
 }
 
 impl BoxNode {
-    /// Whether the ray passes through the box. A direction of zero gives infinities, or NaN exactly on a face of the
-    /// box; `min` and `max` then keep the other operand, so a NaN never loses a hit.
-    fn meets(&self, ray: &Ray) -> bool {
-        let (mut enter, mut leave) = (0.0_f32, ray.reach);
+    /// Where the ray enters the box; `None` when it passes by.
+    fn entry(&self, ray: &Ray) -> Option<f32> {
+        let (mut enter, mut leave) = (0.0, ray.reach);
         for axis in 0..3 {
-            let near = (self.low[axis] - ray.origin[axis]) * ray.inverse[axis];
-            let far = (self.high[axis] - ray.origin[axis]) * ray.inverse[axis];
-            enter = enter.max(near.min(far));
-            leave = leave.min(near.max(far));
+            let low = (self.low[axis] - ray.origin[axis]) * ray.inverse[axis];
+            let high = (self.high[axis] - ray.origin[axis]) * ray.inverse[axis];
+            enter = larger(enter, smaller(low, high));
+            leave = smaller(leave, larger(low, high));
         }
-        enter <= leave
+        (enter <= leave).then_some(enter)
     }
+}
+
+/// The smaller of two numbers, in one instruction; nothing here is NaN.
+fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// The larger of two numbers, in one instruction; nothing here is NaN.
+fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
 }
 
 #[derive(Clone, Copy)]

@@ -17,6 +17,9 @@ const SAMPLE_SPACING_M: f32 = 0.1;
 /// Fewest and most intervals of an edge.
 const SAMPLE_COUNTS: (f32, f32) = (3.0, 30.0);
 
+/// Squares along the edge of the cube by which directions are bundled.
+const BUNDLES_A_SIDE: usize = 16;
+
 /// What is seen from one eye point; worked out edge by edge when first asked for.
 #[derive(Debug, Clone)]
 pub struct ViewpointVisibility<'a> {
@@ -25,7 +28,8 @@ pub struct ViewpointVisibility<'a> {
     occluders: &'a Occluders,
     pieces: Vec<Segment3>,
     pieces_of_edge: Vec<Option<Range<u32>>>,
-    last_blocker: Blocker,
+    /// For each bundle of directions what last stood in the way there. It only saves time: a ray is blocked or not.
+    likely_blockers: Vec<Blocker>,
 }
 
 impl<'a> ViewpointVisibility<'a> {
@@ -40,7 +44,7 @@ impl<'a> ViewpointVisibility<'a> {
             occluders,
             pieces: Vec::new(),
             pieces_of_edge: vec![None; world.edges.len()],
-            last_blocker: Blocker::default(),
+            likely_blockers: vec![Blocker::default(); 6 * BUNDLES_A_SIDE * BUNDLES_A_SIDE],
         }
     }
 
@@ -102,14 +106,28 @@ impl<'a> ViewpointVisibility<'a> {
     }
 
     fn is_seen(&mut self, sample: Point3) -> bool {
-        match self.occluders.blocker(self.eye, sample, self.last_blocker) {
+        let likely = &mut self.likely_blockers[bundle(self.eye, sample)];
+        match self.occluders.blocker(self.eye, sample, *likely) {
             Some(blocker) => {
-                self.last_blocker = blocker;
+                *likely = blocker;
                 false
             }
             None => true,
         }
     }
+}
+
+/// Which bundle the direction from `eye` to `sample` belongs to: directions are sorted by where they leave a cube round
+/// the eye, each side of the cube being divided into squares.
+fn bundle(eye: Point3, sample: Point3) -> usize {
+    let direction = [sample.x - eye.x, sample.y - eye.y, sample.z - eye.z];
+    let size = direction.map(f32::abs);
+    let axis = if size[0] >= size[1] && size[0] >= size[2] { 0 } else { 1 + usize::from(size[2] > size[1]) };
+    let side = 2 * axis + usize::from(direction[axis] > 0.0);
+    // A cast turns NaN into zero and keeps the rest in range.
+    let square = |along: f32| ((along / size[axis] + 1.0) * 0.5 * BUNDLES_A_SIDE as f32) as usize;
+    let [u, v] = [square(direction[(axis + 1) % 3]), square(direction[(axis + 2) % 3])];
+    (side * BUNDLES_A_SIDE + u.min(BUNDLES_A_SIDE - 1)) * BUNDLES_A_SIDE + v.min(BUNDLES_A_SIDE - 1)
 }
 
 #[cfg(test)]

@@ -70,8 +70,11 @@ fn desk() -> Template {
     let mut desk = Template::new("desk");
     let under = DESK_HEIGHT_M - 0.03;
     desk.add_box([-0.8, 0.0, under], [0.8, 0.8, DESK_HEIGHT_M]);
-    desk.add_box([-0.78, 0.05, 0.0], [-0.75, 0.75, under]);
-    desk.add_box([0.34, 0.1, 0.0], [0.78, 0.74, under]);
+    // Where they meet the top, nobody sees them.
+    for (low, high) in [([-0.78, 0.05, 0.0], [-0.75, 0.75, under]), ([0.34, 0.1, 0.0], [0.78, 0.74, under])] {
+        desk.add_post(low, high);
+        desk.add_outline(&[low, [high[0], low[1], 0.0], [high[0], high[1], 0.0], [low[0], high[1], 0.0]]);
+    }
     for (bottom, top) in [(0.05, 0.31), (0.32, 0.5), (0.51, 0.69)] {
         desk.add_front(0.74, (0.36, 0.76), (bottom, top));
         desk.add_line([0.48, 0.74, top - 0.05], [0.64, 0.74, top - 0.05]);
@@ -132,7 +135,7 @@ fn filing_cabinet() -> Template {
     for drawer in 0..4 {
         let bottom = 0.06 + drawer as f32 * 0.31;
         cabinet.add_front(front, (-0.2, 0.2), (bottom, bottom + 0.29));
-        cabinet.add_front(front, (-0.08, 0.08), (bottom + 0.2, bottom + 0.23));
+        cabinet.add_line([-0.08, front, bottom + 0.22], [0.08, front, bottom + 0.22]);
     }
     cabinet
 }
@@ -164,7 +167,7 @@ fn whiteboard() -> Template {
     let mut board = Template::new("whiteb");
     board.add_box([-0.9, 0.0, 0.92], [0.9, 0.03, 2.1]);
     board.add_front(0.03, (-0.86, 0.86), (0.96, 2.06));
-    board.add_box([-0.4, 0.03, 0.9], [0.4, 0.08, 0.92]);
+    board.add_plate([-0.4, 0.03, 0.9], [0.4, 0.08, 0.92]);
     board
 }
 

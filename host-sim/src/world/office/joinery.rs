@@ -66,7 +66,7 @@ fn door_placement(room: &Room) -> (Placement, bool) {
 /// Middles of a room's lamps: two rows along the room, a lamp about every three metres.
 fn lamp_grid(floor: &Rectangle) -> Vec<(f32, f32)> {
     let (width, depth) = (floor.east - floor.west, floor.north - floor.south);
-    let (columns, rows) = ((width / 2.0) as usize, (depth / 2.6) as usize);
+    let (columns, rows) = ((width / 2.6) as usize, (depth / 2.6) as usize);
     let middle = |low: f32, size: f32, index: usize, count: usize| low + size * (index as f32 + 0.5) / count as f32;
     (0..columns * rows)
         .map(|lamp| {

@@ -10,7 +10,7 @@ pub(super) const WALL_M: f32 = 0.1;
 pub(super) const DOOR_WIDTH_M: f32 = 0.9;
 
 /// Width of a window [m].
-pub(super) const WINDOW_WIDTH_M: f32 = 1.4;
+pub(super) const WINDOW_WIDTH_M: f32 = 1.8;
 
 /// Rooms in one row.
 const ROOMS_IN_ROW: usize = 5;
@@ -132,7 +132,7 @@ fn draw_door(stream: &mut Stream, floor: &Rectangle) -> Door {
 /// As many windows as the outer wall takes, evenly spaced.
 fn windows(floor: &Rectangle) -> Vec<f32> {
     let width = floor.east - floor.west;
-    let count = libm::floorf(width / (WINDOW_WIDTH_M + 0.4));
+    let count = libm::floorf(width / (WINDOW_WIDTH_M + 0.6));
     (0..count as usize).map(|index| floor.west + width * (index as f32 + 0.5) / count).collect()
 }
 

@@ -123,7 +123,7 @@ impl<'a> Furnisher<'a> {
         let mut draw = |low, high| self.stream.uniform(low, high) as f32;
         let screen = Placement::at(draw(-0.35, 0.1), draw(0.18, 0.3), DESK_HEIGHT_M).turned_deg(draw(-15.0, 15.0));
         furniture.monitor.template.place(&desk.then(&screen), world);
-        let chair = Placement::at(draw(-0.35, 0.0), draw(0.95, 1.15), 0.0).turned_deg(180.0 + draw(-50.0, 50.0));
+        let chair = Placement::at(draw(-0.35, 0.0), draw(0.85, 1.05), 0.0).turned_deg(180.0 + draw(-50.0, 50.0));
         furniture.chair.template.place(&desk.then(&chair), world);
         clutter.add_spot(Spot::Desk, desk.then(&Placement::at(draw(-0.3, 0.0), 0.55, DESK_HEIGHT_M)));
         clutter.add_spot(Spot::Desk, desk.then(&Placement::at(draw(0.5, 0.6), 0.3, DESK_HEIGHT_M)));
