@@ -1,0 +1,68 @@
+//! Golden vectors: attempts recorded once, with what the localizer answered, for every machine to agree with.
+//!
+//! Three files in `tests/fixtures/golden/`: a map of a few nodes of the generated office, the looks of some hundred
+//! attempts in it ([`edgeloc_firmware::looks`]), and one line of text for each look with the decision and all scores.
+//! Boards hold them in flash and compare; a test holds them against what is made today.
+
+mod attempts;
+mod looks_writer;
+mod site;
+
+use std::path::PathBuf;
+use std::{fs, io};
+
+use edgeloc_firmware::MEMORY_WORDS;
+
+/// The golden vectors in memory.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Golden {
+    /// Bytes of the topological database.
+    pub map: Vec<u8>,
+    /// Bytes of the looks.
+    pub looks: Vec<u8>,
+    /// A line for each look.
+    pub expected: String,
+}
+
+impl Golden {
+    /// Makes them anew from the office, the rig, the uncertainty sources and the localizer as they are today.
+    #[must_use]
+    pub fn make() -> Self {
+        let site = site::Site::office();
+        let map = site.learn();
+        let looks = looks_writer::write(&attempts::all(&site));
+        let mut expected = String::new();
+        let mut memory = vec![0; MEMORY_WORDS];
+        edgeloc_firmware::replay(&map, &looks, &mut memory, |line| {
+            expected.push_str(line);
+            expected.push('\n');
+        })
+        .expect("looks just written can be replayed");
+        Self { map, looks, expected }
+    }
+
+    /// Reads the committed ones.
+    ///
+    /// # Errors
+    /// When a file is missing or can't be read.
+    pub fn load() -> io::Result<Self> {
+        let [map, looks, expected] = Self::paths();
+        Ok(Self { map: fs::read(map)?, looks: fs::read(looks)?, expected: fs::read_to_string(expected)? })
+    }
+
+    /// Replaces the committed ones.
+    ///
+    /// # Errors
+    /// When a file can't be written.
+    pub fn save(&self) -> io::Result<()> {
+        let [map, looks, expected] = Self::paths();
+        fs::write(map, &self.map)?;
+        fs::write(looks, &self.looks)?;
+        fs::write(expected, &self.expected)
+    }
+
+    fn paths() -> [PathBuf; 3] {
+        let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/golden"));
+        ["office.map", "looks.bin", "expected.txt"].map(|name| folder.join(name))
+    }
+}
