@@ -1,5 +1,7 @@
 //! The steps of the gate, in the order they run.
 
+use std::process::Command;
+
 use crate::setup;
 use crate::summary::Outcome;
 use crate::workspace::{Workspace, run_all};
@@ -65,9 +67,14 @@ fn lint(workspace: &Workspace) -> Outcome {
 }
 
 fn docs(workspace: &Workspace) -> Outcome {
-    let mut command = workspace.cargo("", "doc --workspace --no-deps");
-    command.env("RUSTDOCFLAGS", "-D warnings");
-    run_all([command])
+    let strict = |mut command: Command| {
+        command.env("RUSTDOCFLAGS", "-D warnings");
+        command
+    };
+    run_all([
+        strict(workspace.cargo("", "doc --workspace --no-deps")),
+        strict(workspace.cargo(QEMU_BOARD, "doc --locked --workspace --no-deps")),
+    ])
 }
 
 fn tests(workspace: &Workspace) -> Outcome {
