@@ -31,6 +31,8 @@ pub struct FloorPlan {
 pub struct FreeCells {
     /// Centres of the free cells, world frame.
     pub centers: Vec<Point2>,
+    /// A corner of the grid they lie in, world frame.
+    pub origin: Point2,
     /// Side of a cell [m].
     pub side_m: f64,
 }
@@ -59,7 +61,19 @@ impl FloorPlan {
     /// An empty drawing of the plan's size.
     #[must_use]
     pub fn canvas(&self) -> SVG {
-        drawing(self.size_m.0 * self.px_per_m, self.size_m.1 * self.px_per_m)
+        drawing(self.width_px(), self.height_px())
+    }
+
+    /// Width of the drawing [px].
+    #[must_use]
+    pub fn width_px(&self) -> f64 {
+        self.length_px(self.size_m.0)
+    }
+
+    /// Height of the drawing [px].
+    #[must_use]
+    pub fn height_px(&self) -> f64 {
+        self.length_px(self.size_m.1)
     }
 
     /// Where a point of the world frame lies in the drawing [px].
@@ -110,7 +124,7 @@ impl FloorPlan {
             .into_iter()
             .rfind(|length| length * self.px_per_m < WIDTH_PX / 5.0)
             .unwrap_or(1.0);
-        let y = self.size_m.1 * self.px_per_m - 14.0;
+        let y = self.height_px() - 14.0;
         let end = 12.0 + length_m * self.px_per_m;
         Group::new()
             .add(super::drawing::line("axis", (12.0, y), (end, y)))
@@ -139,8 +153,10 @@ impl FloorPlan {
 
     /// The free cells as one path, neighbours in a row joined.
     fn free_path(&self, free: &FreeCells) -> String {
-        let index = |coordinate: f32| (f64::from(coordinate) / free.side_m).floor() as i64;
-        let cells = free.centers.iter().map(|center| (index(center.y), index(center.x))).collect::<BTreeSet<_>>();
+        let (origin, side_m) = (free.origin, free.side_m);
+        let index = |coordinate: f32, origin: f32| (f64::from(coordinate - origin) / side_m).floor() as i64;
+        let cells = free.centers.iter().map(|center| (index(center.y, origin.y), index(center.x, origin.x)));
+        let cells = cells.collect::<BTreeSet<_>>();
         let mut path = String::new();
         let mut cells = cells.into_iter().peekable();
         while let Some((row, first)) = cells.next() {
@@ -148,7 +164,8 @@ impl FloorPlan {
             while cells.next_if_eq(&(row, last + 1)).is_some() {
                 last += 1;
             }
-            let corner = Point2::new((first as f64 * free.side_m) as f32, ((row + 1) as f64 * free.side_m) as f32);
+            let at = |index: i64, origin: f32| (f64::from(origin) + index as f64 * side_m) as f32;
+            let corner = Point2::new(at(first, origin.x), at(row + 1, origin.y));
             let (x, y) = self.to_px(corner);
             let (width, height) =
                 (self.length_px((last - first + 1) as f64 * free.side_m), self.length_px(free.side_m));
@@ -190,7 +207,7 @@ mod tests {
     #[test]
     fn neighbouring_free_cells_become_one_rectangle() {
         let centers = [(0.05, 0.05), (0.15, 0.05), (0.35, 0.05)].map(|(x, y)| Point2::new(x, y)).to_vec();
-        let plan = FloorPlan::new(None, Some(&FreeCells { centers, side_m: 0.1 }), &[]);
+        let plan = FloorPlan::new(None, Some(&FreeCells { centers, origin: Point2::new(0.0, 0.0), side_m: 0.1 }), &[]);
         assert_eq!(plan.free.matches('M').count(), 2);
     }
 

@@ -5,6 +5,7 @@
 
 mod charts;
 mod drawing;
+mod explanation;
 mod floor_plan;
 mod manifest;
 mod page;
@@ -18,6 +19,7 @@ mod sample;
 
 pub use charts::{looks_histogram, rate_strip, success_by_distance};
 pub use drawing::to_svg_file;
+pub use explanation::{LookExplanation, NodeStanding, scene_drawing, sight};
 pub use floor_plan::{FloorPlan, FreeCells};
 pub use manifest::{HostFacts, Manifest, WorldFacts};
 pub use page::{page, replay_command};

@@ -7,6 +7,7 @@ use super::{Manifest, RunTimings, Summary, timings::look_times_csv};
 use crate::monte_carlo::TrialRecord;
 use crate::scenario::{Scenario, ScenarioError};
 use edgeloc::geometry::Point2;
+use miette::Diagnostic;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::fs;
@@ -205,7 +206,7 @@ fn to_json<T: Serialize>(value: &T) -> Vec<u8> {
 }
 
 /// Why a run folder can't be written or read.
-#[derive(Debug, Error)]
+#[derive(Debug, Error, Diagnostic)]
 pub enum RunFolderError {
     /// Writing fails.
     #[error("{} can't be written: {source}", path.display())]
@@ -225,6 +226,7 @@ pub enum RunFolderError {
     },
     /// The folder holds no finished run.
     #[error("{} holds no finished run: there is no manifest.json in it", path.display())]
+    #[diagnostic(help("give the folder of a finished run, such as runs/latest; `edgeloc run` makes one"))]
     NotARun {
         /// The folder.
         path: PathBuf,
@@ -239,6 +241,7 @@ pub enum RunFolderError {
     },
     /// The scenario is not legal.
     #[error(transparent)]
+    #[diagnostic(transparent)]
     Scenario(#[from] ScenarioError),
 }
 

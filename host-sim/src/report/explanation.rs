@@ -1,0 +1,279 @@
+//! One trial explained look by look: in words, and as a drawing of each look.
+//!
+//! A drawing shows what the camera saw, where the candidates are on the plan, and every node's accumulated score.
+
+use super::FloorPlan;
+use super::drawing::{drawing, line, text, tidy, tooltip};
+use crate::monte_carlo::{LookEvent, TrialRecord};
+use edgeloc::geometry::{PinholeCamera, Point2, Polarity, Segment2};
+use edgeloc::localize::Decision;
+use serde::Serialize;
+use std::fmt::Write;
+use svg::Node;
+use svg::node::element::{Circle, Group, Path, Rectangle, SVG};
+
+/// Nodes named in the words about a look.
+const NAMED_NODES: usize = 5;
+
+/// What happened at one look.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LookExplanation {
+    /// Look, from 1.
+    pub look: usize,
+    /// True heading of the optical axis [degrees].
+    pub heading_deg: f64,
+    /// Segments that the camera saw.
+    pub seen_segments: usize,
+    /// Segments that entered the matching.
+    pub used_segments: usize,
+    /// Every node's accumulated score and standing, by identity.
+    pub nodes: Vec<NodeStanding>,
+    /// The answer, in words.
+    pub decision: String,
+    /// The segments seen.
+    #[serde(skip)]
+    pub scene: Vec<Segment2>,
+}
+
+/// How a node stands after a look.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct NodeStanding {
+    /// Accumulated score, Bhattacharyya coefficients summed over looks.
+    pub score: f64,
+    /// Whether it was a candidate before the look.
+    pub was_candidate: bool,
+    /// Whether it is one after the look.
+    pub is_candidate: bool,
+}
+
+impl LookExplanation {
+    /// What the `look`-th look, from 1, came to.
+    #[must_use]
+    pub fn new(look: usize, event: &LookEvent<'_>) -> Self {
+        let scores = event.localizer.candidates().scores();
+        let standing = |(node, was_candidate): (&edgeloc::localize::NodeScore, &bool)| NodeStanding {
+            score: node.as_f64(),
+            was_candidate: *was_candidate,
+            is_candidate: node.is_candidate(),
+        };
+        let decision = match event.decision {
+            Ok(Decision::Localized(place)) => format!("at node {}", place.node.0),
+            Ok(Decision::LookAgain { turn }) => format!("look again after a turn of {:.0} degrees", turn.degrees()),
+            Ok(Decision::Unknown { reason }) => format!("can't tell: {reason}"),
+            Err(error) => format!("refused: {error}"),
+        };
+        Self {
+            look,
+            heading_deg: f64::from(event.heading.angle().degrees()),
+            seen_segments: event.scene.len(),
+            used_segments: event.localizer.scene_segment_count(),
+            nodes: scores.iter().zip(event.was_candidate).map(standing).collect(),
+            decision,
+            scene: event.scene.to_vec(),
+        }
+    }
+
+    /// Candidates before the look by falling score, so that the leader is first.
+    #[must_use]
+    pub fn ranking(&self) -> Vec<(usize, NodeStanding)> {
+        let mut ranking =
+            self.nodes.iter().copied().enumerate().filter(|(_, node)| node.was_candidate).collect::<Vec<_>>();
+        ranking.sort_by(|(_, a), (_, b)| b.score.total_cmp(&a.score));
+        ranking
+    }
+
+    /// The look in a few lines. `record` tells which nodes would be right.
+    #[must_use]
+    pub fn to_text(&self, record: &TrialRecord) -> String {
+        let ranking = self.ranking();
+        let left = self.nodes.iter().filter(|node| node.is_candidate).count();
+        let mut words = format!(
+            "look {:>2}, heading {:>6.1} degrees: {} segments seen, {} matched against {} candidates\n",
+            self.look,
+            self.heading_deg,
+            self.seen_segments,
+            self.used_segments,
+            ranking.len()
+        );
+        for (rank, (node, standing)) in ranking.iter().enumerate() {
+            let is_right = is_right(record, *node);
+            if rank < NAMED_NODES || is_right {
+                let state = if standing.is_candidate { "stays" } else { "drops out" };
+                let right = if is_right { "  <- one of the two nearest" } else { "" };
+                let _ =
+                    writeln!(words, "    {:>4}. node {node:>3}  score {:.3}  {state}{right}", rank + 1, standing.score);
+            }
+        }
+        let _ = writeln!(words, "    {left} left -> {}", self.decision);
+        words
+    }
+
+    /// The look as a drawing: the image, the plan with the candidates, the scores.
+    #[must_use]
+    pub fn to_svg(&self, plan: &FloorPlan, camera: &PinholeCamera, record: &TrialRecord) -> SVG {
+        let (width, height) = (f64::from(camera.width_px()), f64::from(camera.height_px()));
+        let plan_drawing = self.plan_with_candidates(plan, record);
+        let plan_width = 1000.0 - width.min(560.0) - 60.0;
+        let image_width = width.min(560.0);
+        let image_height = height * image_width / width;
+        let plan_height = plan_width * plan.height_px() / plan.width_px();
+        let top = 54.0;
+        let scores_top = top + image_height.max(plan_height) + 40.0;
+        let heading = format!("look {} at heading {:.1}°: {}", self.look, self.heading_deg, self.decision);
+        let seen = format!("{} segments seen, {} matched", self.seen_segments, self.used_segments);
+        drawing(1000.0, scores_top + 190.0)
+            .add(text("start", (20.0, 26.0), heading).set("class", "title"))
+            .add(text("start", (20.0, 46.0), seen))
+            .add(scene_drawing(&self.scene, camera).set("x", 20).set("y", top).set("width", image_width))
+            .add(text(
+                "start",
+                (image_width + 40.0, 46.0),
+                "candidates that stay (full), drop out now (red) or left before (hollow)",
+            ))
+            .add(
+                plan_drawing
+                    .set("x", tidy(image_width + 40.0))
+                    .set("y", top)
+                    .set("width", plan_width)
+                    .set("height", tidy(plan_height)),
+            )
+            .add(self.score_bars(20.0, scores_top, 960.0, 140.0, record))
+    }
+
+    fn plan_with_candidates(&self, plan: &FloorPlan, record: &TrialRecord) -> SVG {
+        let mut marks = Group::new();
+        for (node, (standing, &place)) in self.nodes.iter().zip(plan.nodes()).enumerate() {
+            let (x, y) = plan.to_px(place);
+            let class = match (standing.was_candidate, standing.is_candidate) {
+                (_, true) => "candidate",
+                (true, false) => "miss",
+                (false, false) => "node",
+            };
+            let label = format!("node {node}: {:.3}", standing.score);
+            marks.append(Circle::new().set("class", class).set("cx", x).set("cy", y).set("r", 8).add(tooltip(label)));
+        }
+        for node in [record.nearest_node, record.second_nearest_node] {
+            if let Some(&place) = plan.nodes().get(node as usize) {
+                let (x, y) = plan.to_px(place);
+                marks.append(Circle::new().set("class", "truth").set("cx", x).set("cy", y).set("r", 14));
+            }
+        }
+        let place = Point2::new(record.true_x_m, record.true_y_m);
+        plan.canvas().add(plan.background()).add(sight(plan, place, self.heading_deg)).add(marks)
+    }
+
+    fn score_bars(&self, left: f64, top: f64, width: f64, height: f64, record: &TrialRecord) -> Group {
+        let most = self.nodes.iter().map(|node| node.score).fold(1e-9, f64::max);
+        let slot = width / self.nodes.len().max(1) as f64;
+        let bottom = top + height;
+        let title =
+            "accumulated score of each node: green = one of the two nearest, blue = candidate, grey = left before";
+        let mut bars = Group::new().add(text("start", (left, top - 10.0), title));
+        for (node, standing) in self.nodes.iter().enumerate() {
+            let class = match (is_right(record, node), standing.was_candidate, standing.is_candidate) {
+                (true, ..) => "bar-truth",
+                (_, _, true) => "bar-plain",
+                (_, true, false) => "bar-bad",
+                _ => "bar-out",
+            };
+            let bar_height = (standing.score / most * height).max(1.0);
+            let label = format!("node {node}: {:.3}", standing.score);
+            bars.append(
+                Rectangle::new()
+                    .set("class", class)
+                    .set("x", tidy(left + (node as f64 + 0.1) * slot))
+                    .set("width", tidy(0.8 * slot))
+                    .set("y", tidy(bottom - bar_height))
+                    .set("height", tidy(bar_height))
+                    .add(tooltip(label)),
+            );
+            let step = self.nodes.len().div_ceil(36).max(1);
+            if node % step == 0 {
+                bars.append(text("middle", (left + (node as f64 + 0.5) * slot, bottom + 16.0), node.to_string()));
+            }
+        }
+        bars.append(line("axis", (left, bottom), (left + width, bottom)));
+        bars.append(text("end", (left + width, top - 10.0), format!("highest {most:.3}")));
+        bars
+    }
+}
+
+/// Segments as the camera's image shows them; the two colours are the two polarities.
+#[must_use]
+pub fn scene_drawing(scene: &[Segment2], camera: &PinholeCamera) -> SVG {
+    let (width, height) = (f64::from(camera.width_px()), f64::from(camera.height_px()));
+    let frame = Rectangle::new().set("class", "frame").set("width", width).set("height", height);
+    let mut image = drawing(width, height).add(frame);
+    for segment in scene {
+        // Both colours depend on how the edge lies in the image, not on the order of its end points.
+        let is_down = (segment.start().y, segment.start().x) <= (segment.end().y, segment.end().x);
+        let class = match (segment.polarity(), is_down) {
+            (Polarity::LeftBrighter, true) | (Polarity::RightBrighter, false) => "edge-left",
+            _ => "edge-right",
+        };
+        let at = |point: Point2| (f64::from(point.x), f64::from(point.y));
+        image.append(line(class, at(segment.start()), at(segment.end())));
+    }
+    image
+}
+
+/// A robot on the plan, looking along a heading.
+#[must_use]
+pub fn sight(plan: &FloorPlan, place: Point2, heading_deg: f64) -> Group {
+    let (x, y) = plan.to_px(place);
+    let reach = plan.length_px(1.5);
+    let corner = |offset_deg: f64| {
+        let angle = (heading_deg + offset_deg).to_radians();
+        (tidy(x + reach * libm::cos(angle)), tidy(y - reach * libm::sin(angle)))
+    };
+    let ((left_x, left_y), (right_x, right_y)) = (corner(32.5), corner(-32.5));
+    Group::new()
+        .add(Path::new().set("class", "sight").set("d", format!("M{x} {y}L{left_x} {left_y}L{right_x} {right_y}z")))
+        .add(Circle::new().set("class", "hit").set("cx", x).set("cy", y).set("r", 6).add(tooltip("the robot")))
+}
+
+fn is_right(record: &TrialRecord, node: usize) -> bool {
+    [record.nearest_node as usize, record.second_nearest_node as usize].contains(&node)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::sample;
+
+    fn look() -> LookExplanation {
+        let standing = |score, was_candidate, is_candidate| NodeStanding { score, was_candidate, is_candidate };
+        LookExplanation {
+            look: 2,
+            heading_deg: 30.0,
+            seen_segments: 140,
+            used_segments: 90,
+            nodes: vec![
+                standing(0.4, false, false),
+                standing(1.1, true, true),
+                standing(1.3, true, true),
+                standing(0.9, true, false),
+            ],
+            decision: "look again after a turn of 30 degrees".to_owned(),
+            scene: vec![],
+        }
+    }
+
+    #[test]
+    fn the_words_name_leader_losers_and_truth() {
+        let mut record = sample::run().results.records[0].clone();
+        (record.nearest_node, record.second_nearest_node) = (3, 1);
+        let words = look().to_text(&record);
+        let position = |part: &str| words.find(part).unwrap_or_else(|| panic!("{words} lacks {part}"));
+        assert!(position("node   2  score 1.300  stays") < position("node   1  score 1.100  stays  <- one of"));
+        assert!(position("node   3  score 0.900  drops out  <- one of") < position("2 left -> look again"));
+    }
+
+    #[test]
+    fn a_look_can_be_drawn_even_when_nothing_was_seen() {
+        let sample = sample::run();
+        let plan = FloorPlan::new(Some(&sample.world), None, &sample.results.nodes);
+        let svg = look().to_svg(&plan, &PinholeCamera::reference(), &sample.results.records[0]).to_string();
+        assert!(svg.contains("look 2 at heading 30.0°") && !svg.contains("NaN"));
+    }
+}
