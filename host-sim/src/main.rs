@@ -1,2 +1,7 @@
-//! Binary.
-fn main() {}
+//! `edgeloc`: build worlds, learn them, localise a kidnapped robot in them many times, look at what came out.
+
+mod cli;
+
+fn main() -> std::process::ExitCode {
+    cli::main()
+}

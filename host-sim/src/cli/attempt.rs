@@ -1,0 +1,87 @@
+//! One attempt explained: what `locate` and `replay` share.
+
+use super::console::{self, Format};
+use super::worlds;
+use edgeloc_sim::monte_carlo::{self, Site, TrialRecord, TruePose};
+use edgeloc_sim::report::{FloorPlan, LookExplanation, answer_distance_m, to_svg_file};
+use edgeloc_sim::scenario::{Row, Scenario};
+use miette::{IntoDiagnostic, Result, WrapErr};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// One attempt, as `--format json` prints it.
+#[derive(Debug, Serialize)]
+pub(super) struct Attempt {
+    /// The trial's line of trials.csv.
+    pub(super) record: TrialRecord,
+    /// Distance from the true position to the answered node [m].
+    answer_distance_m: Option<f64>,
+    /// What happened, look by look.
+    looks: Vec<LookExplanation>,
+    /// Drawings of the looks.
+    drawings: Vec<PathBuf>,
+}
+
+impl Attempt {
+    /// Makes the attempt and draws its looks into `folder`.
+    pub(super) fn make(
+        site: &Site,
+        scenario: &Scenario,
+        row: &Row,
+        trial: u32,
+        start: Option<TruePose>,
+        folder: &Path,
+    ) -> Result<Self> {
+        let mut looks = Vec::new();
+        let record = monte_carlo::replay(site, scenario, row, trial, start, |event| {
+            looks.push(LookExplanation::new(looks.len() + 1, event));
+        });
+        let record = record.into_diagnostic()?;
+        let plan = FloorPlan::new(Some(&site.world), Some(&worlds::free_cells(&site.free_space)), &site.nodes);
+        std::fs::create_dir_all(folder)
+            .into_diagnostic()
+            .wrap_err_with(|| format!("the folder {} can't be made", folder.display()))?;
+        let mut drawings = Vec::new();
+        for look in &looks {
+            let path = folder.join(format!("look-{:02}.svg", look.look));
+            let drawing = look.to_svg(&plan, &site.rig.camera, &record);
+            console::write_file(&path, to_svg_file(drawing).as_bytes())?;
+            drawings.push(path);
+        }
+        let answer_distance_m = answer_distance_m(&record, &site.nodes);
+        Ok(Self { record, answer_distance_m, looks, drawings })
+    }
+
+    /// Prints the attempt.
+    pub(super) fn print(&self, format: Format) -> Result<()> {
+        if format == Format::Json {
+            return console::print_json(self);
+        }
+        let record = &self.record;
+        console::print(&format!(
+            "truth: {:.2}, {:.2} m, heading {:.1} degrees; nearest nodes {} ({:.2} m) and {}\n",
+            record.true_x_m,
+            record.true_y_m,
+            record.true_heading_deg,
+            record.nearest_node,
+            record.nearest_node_distance_m,
+            record.second_nearest_node
+        ))?;
+        for look in &self.looks {
+            console::print(&look.to_text(record))?;
+        }
+        let answer = match (record.answered_node, self.answer_distance_m) {
+            (Some(node), Some(distance)) => format!("node {node}, {distance:.2} m from the truth"),
+            _ => "no answer".to_owned(),
+        };
+        let verdict = if record.is_success { "right" } else { "wrong" };
+        console::print(&format!("answer after {} looks: {answer}: {verdict}", record.looks))?;
+        match (self.drawings.first(), self.drawings.last()) {
+            (Some(first), Some(last)) if first != last => {
+                console::print(&format!("drawings: {} to {}", first.display(), last.display()))
+            }
+            (Some(only), _) => console::print(&format!("drawing: {}", only.display())),
+            _ => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! `demo`: what `cargo run --release` does.
+
+use super::console::{self, Format};
+use super::run::RunPrinted;
+use super::scenario_args::ScenarioChanges;
+use super::summary_table;
+use super::trials::{self, RunArguments, name};
+use clap::Args;
+use miette::Result;
+
+/// Learn the bundled office and put a robot down in it 2000 times: the paper's localiser beside the paper's figure.
+#[derive(Debug, Default, Args)]
+#[command(
+    after_help = "Examples:\n  edgeloc demo\n  edgeloc demo --trials 900 --threads 4\n  edgeloc demo --seed 2 --format json"
+)]
+pub(super) struct Demo {
+    #[command(flatten)]
+    changes: ScenarioChanges,
+    #[command(flatten)]
+    how: RunArguments,
+    /// How to print.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+impl Demo {
+    pub(super) fn execute(self) -> Result<()> {
+        let Some(scenario) = self.changes.load("paper-office")? else { return Ok(()) };
+        if self.format == Format::Text {
+            console::print(&format!(
+                "A robot wakes up somewhere in an office that it has learned before: {} nodes of {} views each.\n\
+                 It looks around, matches the straight edges it sees, and says at which node it is; {} times a row.\n\
+                 near: within {} m of a node; anywhere: anywhere in free space. Right is one of the two nearest nodes.\n",
+                scenario.learning.nodes, scenario.learning.views, scenario.trials, scenario.near_radius_m,
+            ))?;
+        }
+        let (folder, results) = trials::run(scenario, &self.how)?;
+        if self.format == Format::Json {
+            return console::print_json(&RunPrinted { folder: folder.path(), summary: &results.summary });
+        }
+        console::print(&summary_table::headline(&results).to_string())?;
+        console::print(&summary_table::remarks(&results))?;
+        let report = folder.path().join("report.html");
+        let folder = name(folder.path());
+        let worst =
+            summary_table::worst_replay(&results, &folder).unwrap_or_else(|| format!("edgeloc replay {folder}"));
+        console::print(&format!(
+            "\nLook at the report:          {}\n\
+             Watch its worst trial:       {worst}\n\
+             Draw the office:             edgeloc world generate --seed 1 && edgeloc world view office-1.edgeworld\n\
+             Try your own building:       edgeloc world import BUILDING.world\n\
+             Change anything:             edgeloc run paper-office --print-config > my.toml\n\
+             (edgeloc is target/release/edgeloc here, or cargo run --release -- VERB)",
+            report.display()
+        ))
+    }
+}

@@ -1,0 +1,46 @@
+//! `learn`: a world becomes a map, the file that goes into a robot's flash.
+
+use super::console::{self, Format};
+use super::map::MapDescription;
+use super::scenario_args::ScenarioArguments;
+use super::trials;
+use super::world::file_stem;
+use clap::Args;
+use miette::{IntoDiagnostic, Result};
+use std::path::PathBuf;
+
+/// Learn a world: place nodes, look around from each through the uncertainty sources, write the map (.edgemap).
+///
+/// The map is the topological database that the on-robot library opens in place, byte for byte.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  edgeloc learn\n  edgeloc learn --world small_house.edgeworld --nodes 40\n  \
+                        edgeloc learn my.toml --noise-draw 3 -o flash.edgemap")]
+pub(super) struct Learn {
+    #[command(flatten)]
+    scenario: ScenarioArguments,
+    /// Which draw of the map's noise; trials of a run use 0, 1, 2, ... in turn.
+    #[arg(long, value_name = "I", default_value_t = 0)]
+    noise_draw: u32,
+    /// Map to write [default: the name of the world, .edgemap].
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Overwrite the map.
+    #[arg(long)]
+    force: bool,
+    /// How to print.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+impl Learn {
+    pub(super) fn execute(self) -> Result<()> {
+        let Some(scenario) = self.scenario.load()? else { return Ok(()) };
+        let site = trials::prepare(&scenario)?;
+        let default_output = || PathBuf::from(format!("{}.edgemap", file_stem(&site.world.name)));
+        let path = self.output.clone().unwrap_or_else(default_output);
+        console::check_overwrite(&path, self.force)?;
+        let bytes = site.learn_map(&scenario, self.noise_draw).into_diagnostic()?;
+        console::write_file(&path, &bytes)?;
+        MapDescription::new(&path, &bytes)?.print(self.format)
+    }
+}

@@ -1,0 +1,90 @@
+//! The command line: one verb, one file.
+//!
+//! Results go to standard output, progress, remarks and errors to standard error. Exit codes: 0 done, 1 failed, 2 wrong
+//! usage of the command line.
+
+mod attempt;
+mod console;
+mod demo;
+mod learn;
+mod locate;
+mod map;
+mod progress;
+mod replay;
+mod report;
+mod run;
+mod scenario_args;
+mod summary_table;
+mod trials;
+mod world;
+mod worlds;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+use tracing_subscriber::EnvFilter;
+
+/// Global localisation of a robot from straight stereo edges: worlds, maps, kidnapped-robot trials and their reports.
+#[derive(Debug, Parser)]
+#[command(name = "edgeloc", version, after_help = EXAMPLES, max_term_width = 110)]
+struct Arguments {
+    #[command(subcommand)]
+    verb: Option<Verb>,
+    /// Log to standard error what is done (-v) and in detail (-vv).
+    #[arg(short, long, global = true, action = clap::ArgAction::Count)]
+    verbose: u8,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  edgeloc                                        the demo: learn the bundled office, 2000 trials, a report
+  edgeloc run smoke                              does everything work? a few seconds
+  edgeloc world import small_house.world         make a world of a building
+  edgeloc run paper-office --world small_house.edgeworld
+  edgeloc replay runs/latest --trial 17          one trial of a run, look by look
+
+Exit codes: 0 done, 1 failed, 2 wrong usage of the command line.";
+
+#[derive(Debug, Subcommand)]
+enum Verb {
+    Demo(demo::Demo),
+    #[command(subcommand)]
+    World(world::World),
+    Learn(learn::Learn),
+    #[command(subcommand)]
+    Map(map::Map),
+    Locate(locate::Locate),
+    Run(run::Run),
+    Replay(replay::Replay),
+    Report(report::Report),
+}
+
+/// Reads the command line and does what it asks.
+pub(crate) fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    start_log(arguments.verbose);
+    let done = match arguments.verb.unwrap_or(Verb::Demo(demo::Demo::default())) {
+        Verb::Demo(verb) => verb.execute(),
+        Verb::World(verb) => verb.execute(),
+        Verb::Learn(verb) => verb.execute(),
+        Verb::Map(verb) => verb.execute(),
+        Verb::Locate(verb) => verb.execute(),
+        Verb::Run(verb) => verb.execute(),
+        Verb::Replay(verb) => verb.execute(),
+        Verb::Report(verb) => verb.execute(),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            console::remark(&format!("{error:?}"));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Log lines of this program at the level asked for; `RUST_LOG` overrules.
+fn start_log(verbose: u8) {
+    let level =
+        ["off", "edgeloc=info,edgeloc_sim=info", "edgeloc=debug,edgeloc_sim=debug"][usize::from(verbose.min(2))];
+    let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new(level));
+    tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).init();
+}

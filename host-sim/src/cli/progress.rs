@@ -1,0 +1,61 @@
+//! Progress on standard error: rate, time to go and the success rate so far; silent unless it is a terminal.
+
+use edgeloc_sim::monte_carlo::{SuccessRate, TrialRecord};
+use edgeloc_sim::scenario::Scenario;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::collections::BTreeMap;
+use std::sync::Mutex;
+use std::time::Duration;
+
+const BAR: &str = "{bar:24} {pos}/{len} trials, {per_sec}, {eta} to go  {msg}";
+
+/// A turning wheel beside what is being done, until it is dropped.
+pub(super) fn wheel(what: &'static str) -> Wheel {
+    let bar = ProgressBar::new_spinner().with_message(what);
+    bar.enable_steady_tick(Duration::from_millis(100));
+    Wheel { bar }
+}
+
+/// See [`wheel`].
+pub(super) struct Wheel {
+    bar: ProgressBar,
+}
+
+impl Drop for Wheel {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// The progress of a run.
+pub(super) struct TrialProgress {
+    bar: ProgressBar,
+    rates: Mutex<BTreeMap<String, SuccessRate>>,
+}
+
+impl TrialProgress {
+    /// The bar of all trials of a scenario.
+    pub(super) fn new(scenario: &Scenario) -> Self {
+        let style = ProgressStyle::with_template(BAR).unwrap_or_else(|_| ProgressStyle::default_bar());
+        let bar = ProgressBar::new(u64::from(scenario.trials) * scenario.rows.len() as u64).with_style(style);
+        bar.enable_steady_tick(Duration::from_millis(200));
+        Self { bar, rates: Mutex::default() }
+    }
+
+    /// Counts a trial that ended.
+    pub(super) fn count(&self, record: &TrialRecord) {
+        if let Ok(mut rates) = self.rates.lock() {
+            let rate = rates.entry(record.row.clone()).or_default();
+            rate.trials += 1;
+            rate.successes += u64::from(record.is_success);
+            self.bar.set_message(format!("{}: {rate}", record.row));
+        }
+        self.bar.inc(1);
+    }
+}
+
+impl Drop for TrialProgress {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}

@@ -1,0 +1,60 @@
+//! `replay`: one trial of a finished run again, explained and compared with what the run recorded.
+
+use super::attempt::Attempt;
+use super::console::{self, Format};
+use super::report::{open, world_of};
+use super::scenario_args::find_row;
+use super::world::file_stem;
+use clap::Args;
+use edgeloc_sim::monte_carlo::Site;
+use miette::{IntoDiagnostic, Result, miette};
+use std::path::PathBuf;
+
+/// Replay one trial of a finished run, explained look by look; fails when it does not come out as recorded.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  edgeloc replay runs/latest --trial 17\n  \
+                        edgeloc replay runs/2026-01-31-paper-office --row 'anywhere, polarity' --trial 3")]
+pub(super) struct Replay {
+    /// Folder of the run.
+    run: PathBuf,
+    /// Trial of the row.
+    #[arg(long, value_name = "I")]
+    trial: u32,
+    /// Row of the run; the first when not given.
+    #[arg(long, value_name = "NAME")]
+    row: Option<String>,
+    /// Folder for the drawings [default: replay-<row>-<trial> in the run's folder]; drawings of the same name are
+    /// overwritten.
+    #[arg(long, value_name = "FOLDER")]
+    out: Option<PathBuf>,
+    /// How to print.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+impl Replay {
+    pub(super) fn execute(self) -> Result<()> {
+        let (folder, results) = open(&self.run)?;
+        let scenario = &results.scenario;
+        let row = find_row(scenario, self.row.as_deref())?;
+        let recorded = results.records.iter().find(|record| record.row == row.name && record.trial == self.trial);
+        let recorded = recorded.ok_or_else(|| {
+            let last = scenario.trials.saturating_sub(1);
+            miette!(help = format!("trials count from 0 to {last}"), "there is no trial {} in the run", self.trial)
+        })?;
+        let site = Site::prepare(world_of(&results)?, scenario).into_diagnostic()?;
+        let default_out = || folder.path().join(format!("replay-{}-{}", file_stem(&row.name), self.trial));
+        let out = self.out.clone().unwrap_or_else(default_out);
+        let attempt = Attempt::make(&site, scenario, row, self.trial, None, &out)?;
+        attempt.print(self.format)?;
+        if attempt.record != *recorded {
+            return Err(miette!(
+                help = "a run replays with the version of the program that made it; manifest.json names it",
+                "the replay differs from the run:\n recorded {recorded:?}\n replayed {:?}",
+                attempt.record
+            ));
+        }
+        console::remark("the replay equals the run's record");
+        Ok(())
+    }
+}

@@ -1,0 +1,72 @@
+//! `report`: the figures and the page of a finished run.
+
+use super::console::{self, Format};
+use super::run::RunPrinted;
+use super::trials::name;
+use super::{summary_table, worlds};
+use clap::Args;
+use edgeloc_sim::report::{RunFolder, RunResults, WorldFacts, page};
+use edgeloc_sim::scenario::Scenario;
+use edgeloc_sim::world::{FreeSpace, FreeSpaceOptions, WireframeWorld};
+use miette::{Result, miette};
+use std::path::PathBuf;
+
+/// Print the figures of a finished run and write its report.html anew.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  edgeloc report runs/latest\n  edgeloc report runs/2026-01-31-paper-office --format json"
+)]
+pub(super) struct Report {
+    /// Folder of the run.
+    run: PathBuf,
+    /// How to print.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+impl Report {
+    pub(super) fn execute(self) -> Result<()> {
+        let (folder, results) = open(&self.run)?;
+        let world = match world_of(&results) {
+            Ok(world) => Some(world),
+            Err(error) => {
+                console::remark(&format!("the report goes without the world: {error}"));
+                None
+            }
+        };
+        let free = world.as_ref().and_then(|world| FreeSpace::of(world, &FreeSpaceOptions::default()).ok());
+        let free = free.as_ref().map(worlds::free_cells);
+        let report = page(&results, world.as_ref(), free.as_ref(), &name(&self.run));
+        let report = folder.write("report.html", report.as_bytes())?;
+        if self.format == Format::Json {
+            return console::print_json(&RunPrinted { folder: folder.path(), summary: &results.summary });
+        }
+        console::print(&summary_table::headline(&results).to_string())?;
+        console::print(&summary_table::remarks(&results))?;
+        console::print(&format!("report written: {}", report.display()))
+    }
+}
+
+/// A finished run: its folder, whatever link led there, and its results.
+pub(super) fn open(path: &std::path::Path) -> Result<(RunFolder, RunResults)> {
+    let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    let folder = RunFolder::open(&path)?;
+    let results = folder.read_results()?;
+    Ok((folder, results))
+}
+
+/// The world that a run took place in, if it is still the same.
+pub(super) fn world_of(results: &RunResults) -> Result<WireframeWorld> {
+    let Scenario { world: choice, .. } = &results.scenario;
+    let world = worlds::open(choice)?;
+    let (now, then) = (WorldFacts::new(&world, choice).checksum, &results.manifest.world.checksum);
+    if now == *then {
+        Ok(world)
+    } else {
+        Err(miette!(
+            help = "bring back the world file of the run, or use the version of the program that made it",
+            "the world {:?} has changed since the run: its checksum was {then}, it is {now}",
+            world.name
+        ))
+    }
+}

@@ -1,0 +1,59 @@
+//! `run`: all trials of a scenario.
+
+use super::console::{self, Format};
+use super::scenario_args::ScenarioArguments;
+use super::trials::{self, RunArguments};
+use super::{summary_table, trials::name};
+use clap::Args;
+use edgeloc_sim::report::Summary;
+use miette::Result;
+use serde::Serialize;
+use std::path::Path;
+
+/// Run the kidnapped-robot trials of a scenario; the results go to a folder of their own.
+///
+/// The folder, runs/<date>-<scenario>, holds the manifest, the whole scenario, trials.csv (no wall times in it: the same
+/// scenario gives the same bytes), nodes.csv, summary.json, timings.json, look_times.csv and report.html.
+/// runs/latest points at the newest.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  edgeloc run smoke\n  edgeloc run paper-office --trials 900\n  \
+                        edgeloc run my.toml --world small_house.edgeworld --set localizer.turn_deg=60\n  \
+                        edgeloc run paper-office --print-config > my.toml\n\n\
+                        JSON (--format json): folder, and summary = what summary.json holds: rates are fractions of 1, \
+                        lengths in m, per row trials, successes, success_rate with its 95 % Wilson interval \
+                        (success_rate_low, success_rate_high), looks, segments, unknown and errors.")]
+pub(super) struct Run {
+    #[command(flatten)]
+    scenario: ScenarioArguments,
+    #[command(flatten)]
+    how: RunArguments,
+    /// How to print.
+    #[arg(long, value_enum, default_value_t)]
+    format: Format,
+}
+
+/// What `--format json` prints.
+#[derive(Serialize)]
+pub(super) struct RunPrinted<'r> {
+    /// Folder of the run.
+    pub(super) folder: &'r Path,
+    /// Its figures.
+    pub(super) summary: &'r Summary,
+}
+
+impl Run {
+    pub(super) fn execute(self) -> Result<()> {
+        let Some(scenario) = self.scenario.load()? else { return Ok(()) };
+        let (folder, results) = trials::run(scenario, &self.how)?;
+        if self.format == Format::Json {
+            return console::print_json(&RunPrinted { folder: folder.path(), summary: &results.summary });
+        }
+        console::print(&summary_table::headline(&results).to_string())?;
+        console::print(&summary_table::remarks(&results))?;
+        console::print(&format!("report: {}", folder.path().join("report.html").display()))?;
+        match summary_table::worst_replay(&results, &name(folder.path())) {
+            Some(command) => console::print(&format!("worst trial: {command}")),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! The arguments of every verb that works on a scenario.
+
+use super::console;
+use clap::Args;
+use edgeloc_sim::scenario::{Row, Scenario, WorldChoice};
+use miette::{Result, miette};
+use std::path::PathBuf;
+
+/// Which scenario, and what to change in it.
+#[derive(Debug, Clone, Args)]
+pub(super) struct ScenarioArguments {
+    /// Scenario file (.toml), or a bundled scenario: paper-office, smoke.
+    #[arg(default_value = "paper-office")]
+    scenario: String,
+    #[command(flatten)]
+    changes: ScenarioChanges,
+}
+
+/// What to change in a scenario.
+#[derive(Debug, Clone, Default, Args)]
+pub(super) struct ScenarioChanges {
+    /// World file (.edgeworld) instead of the scenario's world.
+    #[arg(long, value_name = "FILE")]
+    pub(super) world: Option<PathBuf>,
+    /// Change one setting, such as localizer.turn_deg=60 or rows.0.polarity=false; may be repeated.
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    settings: Vec<String>,
+    /// Trials of each row.
+    #[arg(long, value_name = "N")]
+    trials: Option<u32>,
+    /// Nodes of the map.
+    #[arg(long, value_name = "N")]
+    nodes: Option<u16>,
+    /// Seed of all random draws.
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
+    /// Print the whole scenario as TOML that runs as it is, and stop.
+    #[arg(long)]
+    pub(super) print_config: bool,
+}
+
+impl ScenarioArguments {
+    /// The scenario, checked; none when it was only to be printed.
+    pub(super) fn load(&self) -> Result<Option<Scenario>> {
+        self.changes.load(&self.scenario)
+    }
+}
+
+impl ScenarioChanges {
+    /// The scenario called `name` with these changes, checked; none when it was only to be printed.
+    pub(super) fn load(&self, name: &str) -> Result<Option<Scenario>> {
+        let numbers = [
+            self.trials.map(|trials| format!("trials={trials}")),
+            self.nodes.map(|nodes| format!("learning.nodes={nodes}")),
+            self.seed.map(|seed| format!("seed={seed}")),
+        ];
+        let settings = self.settings.iter().cloned().chain(numbers.into_iter().flatten()).collect::<Vec<_>>();
+        let mut scenario = Scenario::load(name, &settings)?;
+        if let Some(world) = &self.world {
+            let file = std::path::absolute(world).unwrap_or_else(|_| world.clone());
+            scenario.world = WorldChoice::File { file };
+        }
+        if self.print_config {
+            console::print(&scenario.to_toml())?;
+            return Ok(None);
+        }
+        Ok(Some(scenario))
+    }
+}
+
+/// The row called `name`, or the first one.
+pub(super) fn find_row<'s>(scenario: &'s Scenario, name: Option<&str>) -> Result<&'s Row> {
+    let rows = scenario.rows.iter().map(|row| format!("{:?}", row.name)).collect::<Vec<_>>().join(", ");
+    let asked = name.unwrap_or_default();
+    scenario
+        .row(name)
+        .ok_or_else(|| miette!(help = format!("rows: {rows}"), "there is no row {asked:?} in the scenario"))
+}

@@ -1,0 +1,76 @@
+//! The figures of a run as a table for people, beside the paper's and chance.
+
+use super::console;
+use comfy_table::{CellAlignment, Table};
+use edgeloc_sim::report::{RunResults, replay_command, worst_trials};
+
+/// The headline table of a run.
+pub(super) fn headline(results: &RunResults) -> Table {
+    let mut table = console::table(&[
+        "row",
+        "success [95 % interval]",
+        "trials",
+        "looks",
+        "ms a look",
+        "can't tell",
+        "to nearest node",
+    ]);
+    let summary = &results.summary;
+    for row in &summary.rows {
+        let timings = results.timings.rows.iter().find(|timings| timings.row == row.row);
+        let errors = if row.errors > 0 { format!(" + {} errors", row.errors) } else { String::new() };
+        table.add_row([
+            row.row.clone(),
+            interval(row.success_rate, (row.success_rate_low, row.success_rate_high)),
+            row.trials.to_string(),
+            format!("{:.2}", row.mean_looks),
+            timings.map_or_else(String::new, |timings| format!("{:.1}", 1e3 * timings.mean_s_per_look)),
+            format!("{}{errors}", row.unknown),
+            format!("{:.2} m", row.mean_nearest_node_distance_m),
+        ]);
+    }
+    table.add_row(["the paper, simulated", &interval(Some(summary.paper_rate), summary.paper_interval), "> 900"]);
+    let chance = format!("{:.1} %", 100.0 * summary.chance_rate);
+    table.add_row([format!("chance, 2 of {} nodes", summary.nodes), chance, String::new()]);
+    for column in 2..=6 {
+        if let Some(column) = table.column_mut(column) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    table
+}
+
+/// Map, time and what is slow, in a few lines.
+pub(super) fn remarks(results: &RunResults) -> String {
+    let (summary, timings) = (&results.summary, &results.timings);
+    let looks = results.records.iter().map(|record| f64::from(record.looks)).sum::<f64>();
+    let mean_s_per_look = timings
+        .rows
+        .iter()
+        .zip(&summary.rows)
+        .map(|(timings, row)| timings.mean_s_per_look * row.mean_looks * row.trials as f64 / looks.max(1.0));
+    let localizer_s = looks * mean_s_per_look.sum::<f64>() / results.manifest.host.used_threads.max(1) as f64;
+    format!(
+        "map: {} nodes, {:.0} segments a node, {:.0} kB\n\
+         time: {:.1} s; {:.1} s to prepare, {:.1} s for trials, of which the localiser took {localizer_s:.1} s ({} threads)",
+        summary.nodes,
+        summary.map.segments_per_node,
+        summary.map.bytes / 1e3,
+        timings.total_s(),
+        timings.prepare_s,
+        timings.trials_s,
+        results.manifest.host.used_threads,
+    )
+}
+
+/// The command that replays the worst trial, if any failed.
+pub(super) fn worst_replay(results: &RunResults, folder: &str) -> Option<String> {
+    worst_trials(&results.records, &results.nodes, 1).first().map(|record| replay_command(record, folder))
+}
+
+fn interval(rate: Option<f64>, (low, high): (f64, f64)) -> String {
+    rate.map_or_else(
+        || "no trials".to_owned(),
+        |rate| format!("{:.1} % [{:.1}, {:.1}]", 100.0 * rate, 100.0 * low, 100.0 * high),
+    )
+}

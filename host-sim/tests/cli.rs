@@ -1,0 +1,167 @@
+//! The command line as a user meets it: the binary itself, in a folder of its own.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// Small enough for a debug build.
+const QUICK: [&str; 5] = ["smoke", "--nodes", "4", "--trials", "3"];
+
+fn edgeloc(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_edgeloc"))
+        .current_dir(folder)
+        .args(arguments)
+        .env("NO_COLOR", "1")
+        .env_remove("RUST_LOG")
+        .output()
+        .expect("the binary starts")
+}
+
+/// Standard output of a command that must succeed.
+fn done(folder: &Path, arguments: &[&str]) -> String {
+    let output = edgeloc(folder, arguments);
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(0), "{arguments:?} failed: {stderr}");
+    String::from_utf8(output.stdout).expect("UTF-8")
+}
+
+/// Standard error of a command that must fail with `code`.
+fn failed(folder: &Path, arguments: &[&str], code: i32) -> String {
+    let output = edgeloc(folder, arguments);
+    let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {stderr}");
+    assert!(output.stdout.is_empty(), "an error is no result: {arguments:?}");
+    stderr
+}
+
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().expect("a temporary folder")
+}
+
+fn json(text: &str) -> serde_json::Value {
+    serde_json::from_str(text).expect("JSON alone on standard output")
+}
+
+#[test]
+fn the_help_of_every_verb_has_an_example() {
+    let folder = folder();
+    for verb in [
+        &[][..],
+        &["demo"],
+        &["world"],
+        &["world", "generate"],
+        &["world", "import"],
+        &["world", "info"],
+        &["world", "view"],
+        &["learn"],
+        &["map"],
+        &["map", "info"],
+        &["locate"],
+        &["run"],
+        &["replay"],
+        &["report"],
+    ] {
+        let help = done(folder.path(), &[verb, &["--help"]].concat());
+        let example = format!("  edgeloc {}", verb.join(" "));
+        assert!(help.contains("Examples:") && help.contains(example.trim_end()), "{verb:?}: {help}");
+    }
+}
+
+#[test]
+fn errors_name_the_place_the_reason_and_the_remedy() {
+    let folder = folder();
+    std::fs::write(folder.path().join("mine.toml"), "trials = 3\n[localizer]\nturn = 60\n").expect("written");
+    std::fs::write(folder.path().join("zero.toml"), "trials = 0\n").expect("written");
+    std::fs::write(folder.path().join("broken.edgeworld"), "edgewrld but no more").expect("written");
+    for (arguments, code, expected) in [
+        (&["run", "mine.toml"][..], 1, &["turn", "turn_deg", "mine.toml:3:1"][..]),
+        (&["run", "zero.toml"], 1, &["trials = 0", "1 to 1000000", "zero.toml:1:10"]),
+        (&["run", "nowhere.toml"], 1, &["nowhere.toml", "paper-office"]),
+        (&["run", "smoke", "--set", "learning.nodse=3"], 1, &["nodse", "nodes"]),
+        (&["run", "smoke", "--world", "broken.edgeworld"], 1, &["broken.edgeworld"]),
+        (&["run", "smoke", "--world", "house.dae"], 1, &["world import", "house.dae"]),
+        (&["world", "info", "absent.edgeworld"], 1, &["absent.edgeworld"]),
+        (&["map", "info", "mine.toml"], 1, &["mine.toml", "edgeloc learn"]),
+        (&["report", "."], 1, &["manifest.json"]),
+        (&["locate", "smoke", "--row", "none"], 1, &["none", "near, polarity"]),
+        (&["fly"], 2, &["fly"]),
+        (&["run", "smoke", "--trials", "many"], 2, &["many"]),
+    ] {
+        let stderr = failed(folder.path(), arguments, code);
+        for part in expected {
+            assert!(stderr.contains(part), "{arguments:?} does not mention {part:?}: {stderr}");
+        }
+    }
+}
+
+#[test]
+fn the_printed_configuration_runs_as_it_is() {
+    let folder = folder();
+    let text = done(folder.path(), &["run", "smoke", "--set", "localizer.turn_deg=60", "--print-config"]);
+    std::fs::write(folder.path().join("again.toml"), &text).expect("written");
+    assert!(text.contains("turn_deg = 60.0") && text.contains("[uncertainty.edge_detection_loss]"), "{text}");
+    assert_eq!(done(folder.path(), &["run", "again.toml", "--print-config"]), text);
+}
+
+#[test]
+fn a_world_is_generated_described_drawn_learned_and_localised_in() {
+    let folder = folder();
+    let path = folder.path();
+    let made = json(&done(path, &["world", "generate", "--seed", "3", "--format", "json"]));
+    let info = json(&done(path, &["world", "info", "office-3.edgeworld", "--format", "json"]));
+    assert_eq!(made, info);
+    assert!(info["edges"].as_u64().is_some_and(|edges| edges > 5000), "{info}");
+    assert!(info["free_space"]["area_m2"].as_f64().is_some_and(|area| area > 50.0), "{info}");
+
+    let refusal = failed(path, &["world", "generate", "--seed", "3"], 1);
+    assert!(refusal.contains("office-3.edgeworld exists") && refusal.contains("--force"), "{refusal}");
+
+    let world = ["--world", "office-3.edgeworld"];
+    let map = json(&done(path, &[&["learn", "smoke", "--nodes", "4", "--format", "json"][..], &world].concat()));
+    let again = json(&done(path, &["map", "info", "office-3.edgemap", "--format", "json"]));
+    assert_eq!(map, again);
+    assert_eq!(map["nodes"], 4);
+
+    let place = format!("{},{}", map["positions"][2]["x_m"], map["positions"][2]["y_m"]);
+    let at = ["--at", &place, "--heading-deg", "30", "--format", "json", "--out", "drawings"];
+    let attempt = json(&done(path, &[&["locate", "smoke", "--nodes", "4"][..], &world, &at].concat()));
+    assert_eq!(attempt["record"]["nearest_node"], 2);
+    assert_eq!(attempt["looks"].as_array().map(Vec::len), attempt["drawings"].as_array().map(Vec::len));
+    assert!(path.join("drawings/look-01.svg").is_file());
+
+    let at_node = ["--eye", &place, "--heading-deg", "30"];
+    done(path, &["world", "view", "office-3.edgeworld", "-o", "plan.svg"]);
+    done(path, &[&["world", "view", "office-3.edgeworld", "-o", "eye.svg"][..], &at_node].concat());
+    for drawing in ["plan.svg", "eye.svg"] {
+        let text = std::fs::read_to_string(path.join(drawing)).expect("a drawing");
+        assert!(text.starts_with("<svg") && !text.contains("NaN"), "{drawing}");
+    }
+}
+
+#[test]
+fn a_run_repeats_byte_for_byte_and_each_trial_replays() {
+    let folder = folder();
+    let path = folder.path();
+    let run = |threads: &str| {
+        let more = ["--threads", threads, "--format", "json"];
+        json(&done(path, &[&["run"][..], &QUICK, &more].concat()))
+    };
+    let (first, second) = (run("1"), run("2"));
+    assert_ne!(first["folder"], second["folder"]);
+    assert_eq!(first["summary"], second["summary"]);
+    let trials = |run: &serde_json::Value| {
+        let folder = path.join(run["folder"].as_str().expect("a path"));
+        std::fs::read(folder.join("trials.csv")).expect("trials")
+    };
+    assert_eq!(trials(&first), trials(&second));
+    assert_eq!(trials(&first).iter().filter(|&&byte| byte == b'\n').count(), 1 + 2 * 3);
+
+    let replay = ["replay", "runs/latest", "--row", "anywhere, no polarity", "--trial", "2", "--out", "drawings"];
+    let words = done(path, &replay);
+    assert!(words.contains("look  1") && words.contains("answer after"), "{words}");
+    assert!(failed(path, &["replay", "runs/latest", "--trial", "3"], 1).contains("from 0 to 2"));
+
+    let report = done(path, &["report", "runs/latest"]);
+    assert!(report.contains("near, polarity") && report.contains("report written"), "{report}");
+    let page = std::fs::read_to_string(path.join("runs/latest/report.html")).expect("a page");
+    assert!(page.contains("edgeloc replay runs/latest") || page.contains("every trial succeeded"));
+}
