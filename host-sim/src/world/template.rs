@@ -79,6 +79,25 @@ impl Template {
         ]);
     }
 
+    /// Adds a box that stands on the floor with its back to a wall, without the two edges at its back that nobody sees.
+    pub(crate) fn add_case(&mut self, low: [f32; 3], high: [f32; 3]) {
+        self.add_post(low, high);
+        for z in [low[2], high[2]] {
+            self.add_line([low[0], low[1], z], [low[0], high[1], z]);
+            self.add_line([low[0], high[1], z], [high[0], high[1], z]);
+            self.add_line([high[0], low[1], z], [high[0], high[1], z]);
+        }
+    }
+
+    /// Adds a thin box that hangs on a wall: the outline of its front, and its sides on the wall.
+    pub(crate) fn add_panel(&mut self, low: [f32; 3], high: [f32; 3]) {
+        self.add_solid(low, high);
+        self.add_front(high[1], (low[0], high[0]), (low[2], high[2]));
+        for x in [low[0], high[0]] {
+            self.add_line([x, low[1], low[2]], [x, low[1], high[2]]);
+        }
+    }
+
     /// Adds a box with its faces and twelve edges.
     pub(crate) fn add_box(&mut self, low: [f32; 3], high: [f32; 3]) {
         self.add_solid(low, high);

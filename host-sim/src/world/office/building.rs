@@ -12,7 +12,7 @@ const OUTER_WALL_M: f32 = 0.2;
 const SKIRTING_M: f32 = 0.1;
 
 /// Distance between the joints of the ceiling [m].
-const CEILING_TILE_M: f32 = 1.2;
+const CEILING_TILE_M: f32 = 0.6;
 
 /// A hole in a wall that runs along x: where it is along x and in height [m].
 #[derive(Debug, Clone, Copy)]

@@ -2,7 +2,7 @@
 
 use crate::world::template::Template;
 
-/// A piece of furniture with the room it takes.
+/// A piece of furniture that goes against a wall, with the room it takes.
 #[derive(Debug, Clone)]
 pub(super) struct Piece {
     pub(super) template: Template,
@@ -20,12 +20,12 @@ pub(super) struct Piece {
 #[derive(Debug)]
 pub(super) struct Furniture {
     pub(super) desk: Piece,
-    pub(super) chair: Piece,
-    pub(super) monitor: Piece,
+    pub(super) chair: Template,
+    pub(super) monitor: Template,
     pub(super) bookcase: Piece,
     pub(super) filing_cabinet: Piece,
     pub(super) cupboard: Piece,
-    pub(super) table: Piece,
+    pub(super) table: Template,
     pub(super) whiteboard: Piece,
     pub(super) notice_board: Piece,
     pub(super) picture: Piece,
@@ -52,12 +52,12 @@ impl Furniture {
         let piece = |template, (width, depth), heights, clearance| Piece { template, width, depth, heights, clearance };
         Self {
             desk: piece(desk(), (1.6, 0.8), (0.0, 0.85), 0.8),
-            chair: piece(chair(), (0.5, 0.5), (0.0, 0.95), 0.0),
-            monitor: piece(monitor(), (0.54, 0.2), (0.0, 0.45), 0.0),
+            chair: chair(),
+            monitor: monitor(),
             bookcase: piece(bookcase(), (1.0, SHELF_DEPTH_M), (0.0, 1.98), 0.6),
             filing_cabinet: piece(filing_cabinet(), (0.44, 0.6), (0.0, 1.32), 0.5),
             cupboard: piece(cupboard(), (0.9, 0.45), (0.0, 1.8), 0.6),
-            table: piece(table(), (2.0, 1.0), (0.0, 0.74), 0.0),
+            table: table(),
             whiteboard: piece(whiteboard(), (1.8, 0.08), (0.9, 2.1), 0.0),
             notice_board: piece(notice_board(), (1.2, 0.02), NOTICE_BOARD_HEIGHTS_M, 0.0),
             picture: piece(picture(), (0.6, 0.02), (1.2, 1.8), 0.0),
@@ -69,7 +69,10 @@ impl Furniture {
 fn desk() -> Template {
     let mut desk = Template::new("desk");
     let under = DESK_HEIGHT_M - 0.03;
-    desk.add_box([-0.8, 0.0, under], [0.8, 0.8, DESK_HEIGHT_M]);
+    desk.add_plate([-0.8, 0.0, under], [0.8, 0.8, DESK_HEIGHT_M]);
+    desk.add_line([-0.8, 0.0, under], [-0.8, 0.8, under]);
+    desk.add_line([-0.8, 0.8, under], [0.8, 0.8, under]);
+    desk.add_line([0.8, 0.0, under], [0.8, 0.8, under]);
     // Where they meet the top, nobody sees them.
     for (low, high) in [([-0.78, 0.05, 0.0], [-0.75, 0.75, under]), ([0.34, 0.1, 0.0], [0.78, 0.74, under])] {
         desk.add_post(low, high);
@@ -109,20 +112,26 @@ fn monitor() -> Template {
 /// A bookcase, open in front, with five shelves.
 fn bookcase() -> Template {
     let mut bookcase = Template::new("bookcase");
-    let (half, board, top) = (0.5, 0.025, 1.98);
-    bookcase.add_box([-half, 0.0, 0.0], [-half + board, SHELF_DEPTH_M, top]);
-    bookcase.add_box([half - board, 0.0, 0.0], [half, SHELF_DEPTH_M, top]);
+    let (half, board, back, top) = (0.5_f32, 0.025, 0.02, 1.98);
     let (left, right) = (-half + board, half - board);
+    for (outer, inner) in [(-half, left), (half, right)] {
+        bookcase.add_solid([outer.min(inner), 0.0, 0.0], [outer.max(inner), SHELF_DEPTH_M, top]);
+        for x in [outer, inner] {
+            bookcase.add_line([x, SHELF_DEPTH_M, 0.0], [x, SHELF_DEPTH_M, top]);
+        }
+        bookcase.add_line([outer, 0.0, 0.0], [outer, 0.0, top]);
+        bookcase.add_line([outer, 0.0, 0.0], [outer, SHELF_DEPTH_M, 0.0]);
+        bookcase.add_line([inner, back, SHELF_HEIGHTS_M[0]], [inner, back, top - board]);
+    }
+    bookcase.add_solid([left, 0.0, 0.0], [right, back, top]);
     for z in SHELF_HEIGHTS_M.into_iter().chain([top]) {
-        bookcase.add_solid([left, 0.02, z - board], [right, SHELF_DEPTH_M, z]);
+        bookcase.add_solid([left, back, z - board], [right, SHELF_DEPTH_M, z]);
         for edge in [z - board, z] {
             bookcase.add_line([left, SHELF_DEPTH_M, edge], [right, SHELF_DEPTH_M, edge]);
         }
-        bookcase.add_line([left, 0.02, z], [right, 0.02, z]);
     }
-    bookcase.add_solid([left, 0.0, 0.0], [right, 0.02, top]);
-    for x in [left, right] {
-        bookcase.add_line([x, 0.02, SHELF_HEIGHTS_M[0]], [x, 0.02, top - board]);
+    for z in &SHELF_HEIGHTS_M[..3] {
+        bookcase.add_line([left, back, *z], [right, back, *z]);
     }
     bookcase
 }
@@ -131,7 +140,7 @@ fn bookcase() -> Template {
 fn filing_cabinet() -> Template {
     let mut cabinet = Template::new("filing");
     let front = 0.6;
-    cabinet.add_box([-0.22, 0.0, 0.0], [0.22, front, 1.32]);
+    cabinet.add_case([-0.22, 0.0, 0.0], [0.22, front, 1.32]);
     for drawer in 0..4 {
         let bottom = 0.06 + drawer as f32 * 0.31;
         cabinet.add_front(front, (-0.2, 0.2), (bottom, bottom + 0.29));
@@ -144,7 +153,7 @@ fn filing_cabinet() -> Template {
 fn cupboard() -> Template {
     let mut cupboard = Template::new("cupboard");
     let front = 0.45;
-    cupboard.add_box([-0.45, 0.0, 0.0], [0.45, front, 1.8]);
+    cupboard.add_case([-0.45, 0.0, 0.0], [0.45, front, 1.8]);
     for (left, right, handle) in [(-0.43, -0.005, -0.06), (0.005, 0.43, 0.04)] {
         cupboard.add_front(front, (left, right), (0.08, 1.77));
         cupboard.add_front(front, (handle, handle + 0.02), (0.85, 1.05));
@@ -165,7 +174,7 @@ fn table() -> Template {
 /// A whiteboard with its pen tray.
 fn whiteboard() -> Template {
     let mut board = Template::new("whiteb");
-    board.add_box([-0.9, 0.0, 0.92], [0.9, 0.03, 2.1]);
+    board.add_panel([-0.9, 0.0, 0.92], [0.9, 0.03, 2.1]);
     board.add_front(0.03, (-0.86, 0.86), (0.96, 2.06));
     board.add_plate([-0.4, 0.03, 0.9], [0.4, 0.08, 0.92]);
     board
@@ -175,7 +184,7 @@ fn whiteboard() -> Template {
 fn notice_board() -> Template {
     let mut board = Template::new("notice");
     let (bottom, top) = NOTICE_BOARD_HEIGHTS_M;
-    board.add_box([-0.6, 0.0, bottom], [0.6, 0.02, top]);
+    board.add_panel([-0.6, 0.0, bottom], [0.6, 0.02, top]);
     board.add_front(0.02, (-0.57, 0.57), (bottom + 0.03, top - 0.03));
     board
 }
@@ -183,7 +192,7 @@ fn notice_board() -> Template {
 /// A framed picture with its mount.
 fn picture() -> Template {
     let mut picture = Template::new("picture");
-    picture.add_box([-0.3, 0.0, 1.2], [0.3, 0.02, 1.8]);
+    picture.add_panel([-0.3, 0.0, 1.2], [0.3, 0.02, 1.8]);
     picture.add_front(0.02, (-0.2, 0.2), (1.3, 1.7));
     picture
 }

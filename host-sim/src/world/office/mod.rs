@@ -11,6 +11,7 @@ mod furniture;
 mod joinery;
 mod layout;
 mod room;
+mod walls;
 
 use super::WireframeWorld;
 use super::template::Placement;
@@ -59,10 +60,12 @@ pub fn generate(options: &OfficeOptions) -> WireframeWorld {
     joinery::place(&layout, &mut world);
     let furniture = Furniture::new();
     let mut clutter = Clutter::new();
+    let stream = |room: usize| Stream::new(options.seed, "furnish", room as u64, 0);
     for (index, room) in layout.rooms.iter().enumerate() {
-        let stream = Stream::new(options.seed, "furnish", index as u64, 0);
-        Furnisher::new(room, &furniture, stream).furnish(&mut world, &mut clutter);
+        Furnisher::room(room, &furniture, stream(index), &mut world, &mut clutter).furnish_room(room);
     }
+    let in_corridor = stream(layout.rooms.len());
+    Furnisher::corridor(&layout, &furniture, in_corridor, &mut world, &mut clutter).furnish_corridor();
     clutter.deal_out(options.edge_count, &mut Stream::new(options.seed, "clutter", 0, 0), &mut world);
     world
 }
