@@ -93,11 +93,11 @@ fn boxes() -> Template {
     boxes
 }
 
-/// A keyboard with papers, a stack of trays, an open box.
+/// A keyboard before papers, a stack of trays, a parcel; none is wider than half a metre.
 fn desk_things() -> Vec<Template> {
     let mut papers = Template::new("papers");
-    papers.add_box([-0.22, -0.08, 0.0], [0.22, 0.08, 0.03]);
-    papers.add_outline(&[[0.3, -0.12, 0.0], [0.51, -0.1, 0.0], [0.49, 0.2, 0.0], [0.28, 0.18, 0.0]]);
+    papers.add_plate([-0.22, 0.02, 0.0], [0.22, 0.18, 0.03]);
+    papers.add_outline(&[[-0.2, -0.2, 0.0], [0.1, -0.21, 0.0], [0.11, 0.0, 0.0], [-0.19, 0.01, 0.0]]);
     let mut trays = Template::new("trays");
     for tray in 0..3 {
         let bottom = tray as f32 * 0.08;

@@ -110,14 +110,14 @@ mod tests {
 
     #[test]
     fn every_edge_lies_on_a_surface() {
-        let world = office(1);
+        let world = office(2);
         let triangles: Vec<[Point3; 3]> = world
             .surfaces
             .triangles
             .iter()
             .map(|corners| corners.map(|corner| world.surfaces.vertices[corner as usize]))
             .collect();
-        for edge in world.edges.iter().step_by(5) {
+        for edge in &world.edges {
             let sample = edge.start.lerp(edge.end, 0.37);
             assert!(triangles.iter().any(|triangle| holds(triangle, sample)), "{edge:?} hangs in the air");
         }

@@ -67,6 +67,7 @@ impl<'a> Furnisher<'a> {
             let side = if room.is_north { Side::North } else { Side::South };
             walls.cover(side, room.door.x, DOOR_HALF_M, DOOR_HEIGHTS_M);
         }
+        walls.cover_ends();
         Self { furniture, world, clutter, stream, walls }
     }
 
@@ -130,7 +131,7 @@ impl<'a> Furnisher<'a> {
         let chair = Placement::at(self.draw(-0.35, 0.0), self.draw(0.85, 1.05), 0.0);
         let chair = chair.turned_deg(180.0 + self.draw(-50.0, 50.0));
         furniture.chair.place(&desk.then(&chair), self.world);
-        for (x, y) in [(self.draw(-0.3, 0.0), 0.55), (self.draw(0.5, 0.6), 0.3)] {
+        for (x, y) in [(self.draw(-0.3, 0.0), 0.55), (self.draw(0.45, 0.5), 0.3)] {
             self.clutter.add_spot(Spot::Desk, desk.then(&Placement::at(x, y, DESK_HEIGHT_M)));
         }
     }

@@ -75,6 +75,14 @@ impl Walls {
         self.walls[wall].covered.push(Covered { from: middle - half, to: middle + half, heights });
     }
 
+    /// Keeps pieces off the west and the east wall.
+    pub(super) fn cover_ends(&mut self) {
+        for wall in [1, 3] {
+            let to = self.walls[wall].length;
+            self.walls[wall].covered.push(Covered { from: 0.0, to, heights: (0.0, f32::INFINITY) });
+        }
+    }
+
     /// Has pieces stand off a wall.
     pub(super) fn set_back(&mut self, side: Side, setback: f32) {
         self.walls[if side == Side::South { 0 } else { 2 }].setback = setback;
