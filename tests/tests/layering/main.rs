@@ -1,8 +1,10 @@
-//! The arrows of the house, held as tables: which module and which package may know which, and where `unsafe` lives.
+//! The arrows of the house, held as tables: which module and which package may know which, where `unsafe` lives, and
+//! where float functions come from.
 //!
 //! The sources are scanned as tokens, comments and literals left out, so a link in a doc comment is no arrow. Every
 //! check is shown to fail on a sample beside it.
 
+mod float_functions;
 mod modules;
 mod packages;
 mod source;
