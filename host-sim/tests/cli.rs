@@ -163,5 +163,5 @@ fn a_run_repeats_byte_for_byte_and_each_trial_replays() {
     let report = done(path, &["report", "runs/latest"]);
     assert!(report.contains("near, polarity") && report.contains("report written"), "{report}");
     let page = std::fs::read_to_string(path.join("runs/latest/report.html")).expect("a page");
-    assert!(page.contains("edgeloc replay runs/latest") || page.contains("every trial succeeded"));
+    assert!(page.contains("edgeloc replay runs/20") || page.contains("every trial succeeded"));
 }

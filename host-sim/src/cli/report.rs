@@ -36,7 +36,7 @@ impl Report {
         };
         let free = world.as_ref().and_then(|world| FreeSpace::of(world, &FreeSpaceOptions::default()).ok());
         let free = free.as_ref().map(worlds::free_cells);
-        let report = page(&results, world.as_ref(), free.as_ref(), &name(&self.run));
+        let report = page(&results, world.as_ref(), free.as_ref(), &name(folder.path()));
         let report = folder.write("report.html", report.as_bytes())?;
         if self.format == Format::Json {
             return console::print_json(&RunPrinted { folder: folder.path(), summary: &results.summary });
@@ -49,7 +49,8 @@ impl Report {
 
 /// A finished run: its folder, whatever link led there, and its results.
 pub(super) fn open(path: &std::path::Path) -> Result<(RunFolder, RunResults)> {
-    let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    // A link such as runs/latest will lead elsewhere after the next run.
+    let path = path.read_link().map_or_else(|_| path.to_owned(), |target| path.with_file_name(target));
     let folder = RunFolder::open(&path)?;
     let results = folder.read_results()?;
     Ok((folder, results))

@@ -45,8 +45,7 @@ impl Axes {
 #[must_use]
 pub fn success_by_distance(rows: &[Row], records: &[TrialRecord]) -> SVG {
     let axes = Axes { left: 52.0, top: 14.0, width: 830.0, height: 270.0 };
-    let farthest = records.iter().map(|record| f64::from(record.nearest_node_distance_m)).fold(0.3, f64::max);
-    let bins = 1 + DISTANCE_BORDERS_M[1..DISTANCE_BORDERS_M.len() - 1].partition_point(|&border| border < farthest);
+    let bins = shown_bins(rows, records);
     let slot = 1.0 / bins as f64;
     let mut chart = drawing(900.0, 348.0).add(axes.rates_grid());
     chart.append(
@@ -78,6 +77,21 @@ pub fn success_by_distance(rows: &[Row], records: &[TrialRecord]) -> SVG {
     ))
 }
 
+/// Bins up to the last one in which a row has trials enough.
+fn shown_bins(rows: &[Row], records: &[TrialRecord]) -> usize {
+    let has_enough =
+        |bin: &usize| rows.iter().any(|row| success_in_bin(row, records, *bin).trials >= MIN_TRIALS_PER_BIN);
+    (0..DISTANCE_BORDERS_M.len() - 1).rfind(has_enough).unwrap_or(2) + 1
+}
+
+fn success_in_bin(row: &Row, records: &[TrialRecord], bin: usize) -> SuccessRate {
+    let range = DISTANCE_BORDERS_M[bin]..DISTANCE_BORDERS_M[bin + 1];
+    let in_bin = |record: &&TrialRecord| range.contains(&f64::from(record.nearest_node_distance_m));
+    SuccessRate::of(
+        records.iter().filter(|record| record.row == row.name).filter(in_bin).map(|record| record.is_success),
+    )
+}
+
 fn distance_series(
     series: usize,
     row: &Row,
@@ -91,14 +105,7 @@ fn distance_series(
     let mut marks = Vec::new();
     for bin in 0..bins {
         let (from, to) = (DISTANCE_BORDERS_M[bin], DISTANCE_BORDERS_M[bin + 1]);
-        let is_last = bin + 1 == bins;
-        let in_bin = |distance: f64| distance >= from && (distance < to || is_last);
-        let success = SuccessRate::of(
-            records
-                .iter()
-                .filter(|record| record.row == row.name && in_bin(f64::from(record.nearest_node_distance_m)))
-                .map(|record| record.is_success),
-        );
+        let success = success_in_bin(row, records, bin);
         let Some(rate) = success.rate().filter(|_| success.trials >= MIN_TRIALS_PER_BIN) else { continue };
         let (low, high) = success.success_interval();
         let (x, y) = (x_of(bin), axes.y(rate));

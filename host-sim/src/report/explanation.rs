@@ -15,6 +15,12 @@ use svg::node::element::{Circle, Group, Path, Rectangle, SVG};
 /// Nodes named in the words about a look.
 const NAMED_NODES: usize = 5;
 
+/// Width of the drawing of a look [px].
+const WIDTH_PX: f64 = 1000.0;
+
+/// Width of the camera's image in it [px].
+const IMAGE_WIDTH_PX: f64 = 560.0;
+
 /// What happened at one look.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LookExplanation {
@@ -111,33 +117,20 @@ impl LookExplanation {
     /// The look as a drawing: the image, the plan with the candidates, the scores.
     #[must_use]
     pub fn to_svg(&self, plan: &FloorPlan, camera: &PinholeCamera, record: &TrialRecord) -> SVG {
-        let (width, height) = (f64::from(camera.width_px()), f64::from(camera.height_px()));
-        let plan_drawing = self.plan_with_candidates(plan, record);
-        let plan_width = 1000.0 - width.min(560.0) - 60.0;
-        let image_width = width.min(560.0);
-        let image_height = height * image_width / width;
-        let plan_height = plan_width * plan.height_px() / plan.width_px();
-        let top = 54.0;
-        let scores_top = top + image_height.max(plan_height) + 40.0;
-        let heading = format!("look {} at heading {:.1}°: {}", self.look, self.heading_deg, self.decision);
+        let image_size = fitted((f64::from(camera.width_px()), f64::from(camera.height_px())), IMAGE_WIDTH_PX);
+        let plan_size = fitted((plan.width_px(), plan.height_px()), WIDTH_PX - IMAGE_WIDTH_PX - 60.0);
+        let (left, right, top) = (20.0, IMAGE_WIDTH_PX + 40.0, 54.0);
+        let scores_top = top + image_size.1.max(plan_size.1) + 40.0;
+        let title = format!("look {} at heading {:.1}°: {}", self.look, self.heading_deg, self.decision);
         let seen = format!("{} segments seen, {} matched", self.seen_segments, self.used_segments);
-        drawing(1000.0, scores_top + 190.0)
-            .add(text("start", (20.0, 26.0), heading).set("class", "title"))
-            .add(text("start", (20.0, 46.0), seen))
-            .add(scene_drawing(&self.scene, camera).set("x", 20).set("y", top).set("width", image_width))
-            .add(text(
-                "start",
-                (image_width + 40.0, 46.0),
-                "candidates that stay (full), drop out now (red) or left before (hollow)",
-            ))
-            .add(
-                plan_drawing
-                    .set("x", tidy(image_width + 40.0))
-                    .set("y", top)
-                    .set("width", plan_width)
-                    .set("height", tidy(plan_height)),
-            )
-            .add(self.score_bars(20.0, scores_top, 960.0, 140.0, record))
+        let standings = "full: stays · red: drops out now · hollow: left before";
+        drawing(WIDTH_PX, scores_top + 190.0)
+            .add(text("start", (left, 26.0), title).set("class", "title"))
+            .add(text("start", (left, 46.0), seen))
+            .add(placed(scene_drawing(&self.scene, camera), (left, top), image_size))
+            .add(text("start", (right, 46.0), standings))
+            .add(placed(self.plan_with_candidates(plan, record), (right, top), plan_size))
+            .add(self.score_bars(left, scores_top, WIDTH_PX - 40.0, 140.0, record))
     }
 
     fn plan_with_candidates(&self, plan: &FloorPlan, record: &TrialRecord) -> SVG {
@@ -230,6 +223,15 @@ pub fn sight(plan: &FloorPlan, place: Point2, heading_deg: f64) -> Group {
     Group::new()
         .add(Path::new().set("class", "sight").set("d", format!("M{x} {y}L{left_x} {left_y}L{right_x} {right_y}z")))
         .add(Circle::new().set("class", "hit").set("cx", x).set("cy", y).set("r", 6).add(tooltip("the robot")))
+}
+
+/// A size of the same shape with the given width.
+fn fitted((width, height): (f64, f64), target_width: f64) -> (f64, f64) {
+    (target_width, height * target_width / width)
+}
+
+fn placed(drawing: SVG, (x, y): (f64, f64), (width, height): (f64, f64)) -> SVG {
+    drawing.set("x", tidy(x)).set("y", tidy(y)).set("width", tidy(width)).set("height", tidy(height))
 }
 
 fn is_right(record: &TrialRecord, node: usize) -> bool {

@@ -45,7 +45,7 @@ impl FloorPlan {
     pub fn new(world: Option<&WireframeWorld>, free: Option<&FreeCells>, nodes: &[Point2]) -> Self {
         let places = free.map_or(&[][..], |free| &free.centers).iter().chain(nodes);
         let (min_m, max_m) = bounds(places.copied())
-            .map(|(min, max)| ((min.0 - 1.0, min.1 - 1.0), (max.0 + 1.0, max.1 + 1.0)))
+            .map(|(min, max)| ((min.0 - 0.5, min.1 - 0.5), (max.0 + 0.5, max.1 + 0.5)))
             .or_else(|| bounds(world?.edges.iter().flat_map(|edge| [edge.start, edge.end]).map(above)))
             .unwrap_or(((0.0, 0.0), (1.0, 1.0)));
         let min_m = (min_m.0 - MARGIN_M, min_m.1 - MARGIN_M);

@@ -193,13 +193,13 @@ fn describe(record: &TrialRecord, results: &RunResults) -> String {
         (Outcome::Error, _) => "the localiser refused".to_owned(),
         _ => "could not tell".to_owned(),
     };
+    let truth = record.truth_score.map_or_else(
+        || "both near nodes had dropped out before".to_owned(),
+        |score| format!("{score:.3} of the better near node"),
+    );
     format!(
-        "{}, trial {}: {answer}, after {} looks; scores {:.3} against {:.3} of the better near node",
-        record.row,
-        record.trial,
-        record.looks,
-        record.leader_score,
-        record.truth_score.unwrap_or(0.0)
+        "{}, trial {}: {answer}, after {} looks; leading score {:.3}, {truth}",
+        record.row, record.trial, record.looks, record.leader_score,
     )
 }
 

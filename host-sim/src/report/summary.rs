@@ -134,6 +134,7 @@ pub fn answer_distance_m(record: &TrialRecord, nodes: &[Point2]) -> Option<f64> 
 }
 
 /// The `count` worst failures: errors first, then by distance from the truth to the answered node, then "can't tell".
+/// Of rows that fail from the same start only the worst is listed.
 #[must_use]
 pub fn worst_trials<'r>(records: &'r [TrialRecord], nodes: &[Point2], count: usize) -> Vec<&'r TrialRecord> {
     let badness = |record: &TrialRecord| match record.outcome {
@@ -143,8 +144,14 @@ pub fn worst_trials<'r>(records: &'r [TrialRecord], nodes: &[Point2], count: usi
     };
     let mut failures = records.iter().filter(|record| !record.is_success).collect::<Vec<_>>();
     failures.sort_by(|a, b| badness(b).total_cmp(&badness(a)));
-    failures.truncate(count);
-    failures
+    let mut worst: Vec<&TrialRecord> = Vec::new();
+    for record in failures {
+        let start = |record: &TrialRecord| [record.true_x_m.to_bits(), record.true_y_m.to_bits()];
+        if worst.len() < count && worst.iter().all(|other| start(other) != start(record)) {
+            worst.push(record);
+        }
+    }
+    worst
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> f64 {

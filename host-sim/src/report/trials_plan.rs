@@ -16,14 +16,14 @@ pub fn trial_marks<'r>(plan: &FloorPlan, records: impl Iterator<Item = &'r Trial
         let place = plan.to_px(Point2::new(record.true_x_m, record.true_y_m));
         let mark = Circle::new().set("cx", place.0).set("cy", place.1);
         if record.is_success {
-            hits.append(mark.set("class", "hit").set("r", 5).add(tooltip(describe(plan, record))));
+            hits.append(mark.set("class", "hit").set("r", 4.5).add(tooltip(describe(plan, record))));
             continue;
         }
         let class = if record.outcome == Outcome::Unknown { "unknown" } else { "miss" };
         if let Some(&answered) = record.answered_node.and_then(|node| plan.nodes().get(node as usize)) {
             lines.append(line("miss-line", place, plan.to_px(answered)));
         }
-        misses.append(mark.set("class", class).set("r", 6).add(tooltip(describe(plan, record))));
+        misses.append(mark.set("class", class).set("r", 5).add(tooltip(describe(plan, record))));
     }
     Group::new().add(hits).add(lines).add(misses)
 }
