@@ -139,10 +139,10 @@ fn describe_import(report: &ImportReport) -> Result<()> {
         report.textured_material_count
     ))?;
     for problem in &report.problems {
-        console::remark(&format!("not read: {problem}"));
+        console::remark(&format!("note: {problem}"));
     }
     if report.unlisted_problem_count > 0 {
-        console::remark(&format!("and {} further problems", report.unlisted_problem_count));
+        console::remark(&format!("note: and {} further problems", report.unlisted_problem_count));
     }
     Ok(())
 }
