@@ -8,7 +8,7 @@ use crate::random::Stream;
 use crate::world::FreeSpace;
 use edgeloc::geometry::Point2;
 
-/// Rounds of assigning cells and moving nodes; by then nodes move less than a cell.
+/// The most rounds of assigning cells and moving nodes; mostly nothing moves any more after fewer.
 const ROUNDS: usize = 30;
 
 /// Places `count` nodes on centers of free cells, all different, in the world frame.
@@ -24,7 +24,11 @@ pub fn place_nodes(space: &FreeSpace, count: usize, seed: u64) -> Result<Vec<Poi
     for _ in 0..ROUNDS {
         let mut clusters = Clusters::new(centers.len());
         clusters.grow(space, nodes.iter().copied().enumerate());
-        nodes = clusters.middles(&centers, count);
+        let middles = clusters.middles(&centers, count);
+        if middles == nodes {
+            break;
+        }
+        nodes = middles;
     }
     Ok(nodes.into_iter().map(|cell| centers[cell]).collect())
 }

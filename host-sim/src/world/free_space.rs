@@ -2,14 +2,15 @@
 //!
 //! A cell is *clear* when no surface within the robot's height comes nearer to its center than the robot's radius,
 //! counted by cells and rounded against the robot. Of the clear cells those are *indoors* that
-//! - are walled in: no way over clear cells leads out of the world (and there is floor below them, if the world models
-//!   its floor at all), or
-//! - lie between a floor and a ceiling, for buildings with an open door.
+//! - are walled in: a ball of 2.5 m diameter that rolls round the outside of the world, not passing doors and windows,
+//!   never touches them (and there is floor below them, if the world models its floor at all), or
+//! - lie between a floor and a ceiling, for buildings with a wider opening.
 //!
 //! Of the regions either rule gives, connected over the sides of their cells, the largest one is the free space. Floors
 //! and ceilings are surfaces less than 45 degrees from level, a floor within 10 cm of z = 0.
 
 use super::coverage::{Coverage, Grid, Slab};
+use super::distance::squared_distances;
 use super::{Surfaces, WireframeWorld};
 use crate::random::Stream;
 use edgeloc::geometry::{Point2, Point3};
@@ -19,6 +20,9 @@ const MAX_CELL_COUNT: f64 = 4e6;
 
 /// How far from z = 0 a floor may lie [m].
 const FLOOR_TOLERANCE_M: f64 = 0.1;
+
+/// Radius of the ball that finds the outside of the world [m]: it does not pass openings twice as wide.
+const OUTSIDE_BALL_M: f64 = 1.25;
 
 /// In place of a number, for a cell that is not free.
 const NOT_FREE: u32 = u32::MAX;
@@ -77,8 +81,8 @@ impl FreeSpace {
     pub fn of(world: &WireframeWorld, options: &FreeSpaceOptions) -> Result<Self, FreeSpaceError> {
         check(options)?;
         let grid = grid_over(&world.surfaces, options)?;
-        let is_clear = clear_cells(&world.surfaces, &grid, options);
-        let (rule, mut regions) = indoor_regions(&world.surfaces, &grid, options, &is_clear);
+        let is_touched = touched_cells(&world.surfaces, &grid, options);
+        let (rule, mut regions) = indoor_regions(&world.surfaces, &grid, options, &is_touched);
         if regions.is_empty() {
             return Err(FreeSpaceError::NoRoom { world: world.name.clone(), robot_radius_m: options.robot_radius_m });
         }
@@ -217,7 +221,7 @@ fn check(options: &FreeSpaceOptions) -> Result<(), FreeSpaceError> {
     }
 }
 
-/// A grid over all surfaces, with a border wider than the robot, from where the world's outside is flooded.
+/// A grid over all surfaces, with a border along which the ball of the outside can roll.
 fn grid_over(surfaces: &Surfaces, options: &FreeSpaceOptions) -> Result<Grid, FreeSpaceError> {
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for corners in triangles(surfaces) {
@@ -232,7 +236,7 @@ fn grid_over(surfaces: &Surfaces, options: &FreeSpaceOptions) -> Result<Grid, Fr
         return Err(FreeSpaceError::NoSurfaces);
     }
     let cell_m = f64::from(options.cell_m);
-    let border = f64::from(options.robot_radius_m) + 3.0 * cell_m;
+    let border = OUTSIDE_BALL_M.max(f64::from(options.robot_radius_m)) + 3.0 * cell_m;
     let [width, height] = [0, 1].map(|axis| libm::ceil((high[axis] - low[axis] + 2.0 * border) / cell_m));
     if width * height > MAX_CELL_COUNT {
         let (width_m, depth_m) = (high[0] - low[0], high[1] - low[1]);
@@ -250,34 +254,36 @@ fn triangles(surfaces: &Surfaces) -> impl Iterator<Item = [[f64; 3]; 3]> + '_ {
     surfaces.triangles.iter().filter_map(move |&[a, b, c]| Some([corner(a)?, corner(b)?, corner(c)?]))
 }
 
-/// Cells from whose center no surface in the robot's height is nearer than its radius.
-fn clear_cells(surfaces: &Surfaces, grid: &Grid, options: &FreeSpaceOptions) -> Vec<bool> {
+/// Cells that a surface in the robot's height touches.
+fn touched_cells(surfaces: &Surfaces, grid: &Grid, options: &FreeSpaceOptions) -> Vec<bool> {
     let slab = Slab { low: f64::from(options.slice_m.0), high: f64::from(options.slice_m.1) };
     let mut touched = Coverage::new(grid);
     for triangle in triangles(surfaces) {
         touched.add(&triangle, slab);
     }
-    let reach = f64::from(options.robot_radius_m) / grid.cell_m;
-    let steps = libm::ceil(reach + 0.5) as isize;
-    let is_near = |dx: isize, dy: isize| {
-        let gap = |steps: isize| (steps.abs() as f64 - 0.5).max(0.0);
-        gap(dx) * gap(dx) + gap(dy) * gap(dy) < reach * reach || (dx, dy) == (0, 0)
-    };
-    let disc: Vec<(isize, isize)> = (-steps..=steps)
-        .flat_map(|dy| (-steps..=steps).map(move |dx| (dx, dy)))
-        .filter(|&(dx, dy)| is_near(dx, dy))
-        .collect();
-    let mut is_clear = vec![true; grid.cell_count()];
-    for (cell, _) in touched.cells().into_iter().enumerate().filter(|(_, is_touched)| *is_touched) {
-        let (x, y) = ((cell % grid.width) as isize, (cell / grid.width) as isize);
-        for &(dx, dy) in &disc {
-            let (x, y) = (x + dx, y + dy);
-            if (0..grid.width as isize).contains(&x) && (0..grid.height as isize).contains(&y) {
-                is_clear[y as usize * grid.width + x as usize] = false;
+    touched.cells()
+}
+
+/// Cells whose center keeps at least the robot's radius from all points of touched cells.
+fn clear_cells(grid: &Grid, is_touched: &[bool], options: &FreeSpaceOptions) -> Vec<bool> {
+    let reach = f64::from(options.robot_radius_m) / grid.cell_m + core::f64::consts::FRAC_1_SQRT_2;
+    squared_distances(grid, is_touched).into_iter().map(|squared| squared as f64 >= reach * reach).collect()
+}
+
+/// Cells that the ball does not touch as it rolls round the outside, coming from the border of the grid.
+fn walled_in_cells(grid: &Grid, is_touched: &[bool]) -> Vec<bool> {
+    let reach = OUTSIDE_BALL_M / grid.cell_m;
+    let is_beyond = |squared: i64| squared as f64 >= reach * reach;
+    let ball_fits: Vec<bool> = squared_distances(grid, is_touched).into_iter().map(is_beyond).collect();
+    let mut ball_passes = vec![false; grid.cell_count()];
+    for region in regions(grid, &ball_fits) {
+        if region.iter().any(|&cell| grid.is_on_border(cell)) {
+            for cell in region {
+                ball_passes[cell] = true;
             }
         }
     }
-    is_clear
+    squared_distances(grid, &ball_passes).into_iter().map(is_beyond).collect()
 }
 
 /// The indoor regions by the rule that gives the larger one.
@@ -285,7 +291,7 @@ fn indoor_regions(
     surfaces: &Surfaces,
     grid: &Grid,
     options: &FreeSpaceOptions,
-    is_clear: &[bool],
+    is_touched: &[bool],
 ) -> (IndoorRule, Vec<Vec<usize>>) {
     let level_in = |low: f64, high: f64| {
         let mut coverage = Coverage::new(grid);
@@ -296,31 +302,19 @@ fn indoor_regions(
     };
     let has_floor = level_in(-FLOOR_TOLERANCE_M, FLOOR_TOLERANCE_M.min(f64::from(options.slice_m.1)));
     let has_ceiling = level_in(f64::from(options.slice_m.1), f64::INFINITY);
-    let walled_in = walled_in_cells(grid, is_clear);
+    let is_clear = clear_cells(grid, is_touched, options);
+    let walled_in = both(&is_clear, &walled_in_cells(grid, is_touched));
     let walled_in_count = walled_in.iter().filter(|&&is_in| is_in).count();
     let with_floor = both(&walled_in, &has_floor);
     let models_floor = 2 * with_floor.iter().filter(|&&is_in| is_in).count() > walled_in_count;
     let walled_in = regions(grid, if models_floor { &with_floor } else { &walled_in });
-    let covered = regions(grid, &both(is_clear, &both(&has_floor, &has_ceiling)));
+    let covered = regions(grid, &both(&is_clear, &both(&has_floor, &has_ceiling)));
     let largest = |regions: &[Vec<usize>]| regions.iter().map(Vec::len).max().unwrap_or(0);
     if largest(&covered) > largest(&walled_in) {
         (IndoorRule::FloorAndCeiling, covered)
     } else {
         (IndoorRule::WalledIn, walled_in)
     }
-}
-
-/// Clear cells that are not connected to the border of the grid.
-fn walled_in_cells(grid: &Grid, is_clear: &[bool]) -> Vec<bool> {
-    let mut is_in = is_clear.to_vec();
-    for region in regions(grid, is_clear) {
-        if region.iter().any(|&cell| grid.is_on_border(cell)) {
-            for cell in region {
-                is_in[cell] = false;
-            }
-        }
-    }
-    is_in
 }
 
 /// Regions of cells connected over their sides, in the order of their first cell.
@@ -390,7 +384,7 @@ pub enum FreeSpaceError {
     },
     /// Nothing is indoors and free.
     #[error(
-        "the world {world:?} has no indoor place for a robot of {robot_radius_m} m radius: nothing is walled in, or \
+        "the world {world:?} has no indoor place for a robot of {robot_radius_m} m radius: nothing is walled in or \
          lies between a floor at z = 0 and a ceiling; check the unit, that z points up and that the floor is at \
          z = 0, or ask for a smaller robot"
     )]
@@ -462,8 +456,24 @@ mod tests {
     }
 
     #[test]
-    fn a_building_with_an_open_door_is_found_by_its_floor_and_ceiling() {
-        let space = free(&room(0.9, |_| {})).expect("a room");
+    fn an_open_door_does_not_let_the_outside_in() {
+        let mut doorway = room(0.9, |_| {});
+        let mut without_floor = doorway.clone();
+        without_floor.surfaces.triangles.retain(|corners| {
+            let [a, b, c] = corners.map(|corner| doorway.surfaces.vertices[corner as usize].z);
+            a.max(b).max(c) - a.min(b).min(c) > 0.1
+        });
+        doorway.surfaces.triangles.reverse();
+        for world in [doorway, without_floor] {
+            let space = free(&world).expect("a room");
+            assert!((8.0..9.5).contains(&space.area_m2()), "{}", space.describe());
+            assert!(space.contains(Point2::new(2.0, 1.5)) && !space.contains(Point2::new(4.6, 1.5)));
+        }
+    }
+
+    #[test]
+    fn a_room_open_on_one_side_is_found_by_its_floor_and_ceiling() {
+        let space = free(&room(3.0, |_| {})).expect("a room");
         assert!(space.area_m2() > 8.0 && space.describe().contains("between a floor and a ceiling"));
         assert!(!space.contains(Point2::new(4.5, 1.5)));
     }

@@ -4,6 +4,7 @@
 
 mod coverage;
 mod crease;
+mod distance;
 pub mod file;
 mod free_space;
 pub mod import;
