@@ -1,0 +1,106 @@
+//! Kidnapped-robot trials end to end: the same rows by every way, the certain case, and a table of a small sweep.
+
+use edgeloc::geometry::{Angle, Heading};
+use edgeloc_sim::monte_carlo::{LookEvent, RunOutcome, Site, TrialRecord, TruePose, replay, run};
+use edgeloc_sim::scenario::{Row, Scenario, Start};
+use edgeloc_sim::uncertainty::Sources;
+use edgeloc_sim::world::office::{self, OfficeOptions};
+use std::fmt::Write as _;
+
+/// A small scenario in the generated office: 16 nodes, 12 trials of four rows over 3 maps.
+fn small_scenario() -> Scenario {
+    let mut scenario = Scenario { trials: 12, trials_per_map: 4, ..Scenario::default() };
+    scenario.learning.nodes = 16;
+    scenario
+}
+
+fn office_site(scenario: &Scenario) -> Site {
+    let world = office::generate(&OfficeOptions { seed: 3, ..OfficeOptions::default() });
+    Site::prepare(world, scenario).expect("the office has room for the nodes")
+}
+
+fn run_on(threads: usize, site: &Site, scenario: &Scenario) -> RunOutcome {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a small pool");
+    pool.install(|| run(site, scenario, &|_| ())).expect("the office can be learned")
+}
+
+#[test]
+fn one_thread_and_many_and_a_replay_give_the_same_records() {
+    let scenario = small_scenario();
+    let site = office_site(&scenario);
+    let alone = run_on(1, &site, &scenario).records;
+    assert_eq!(alone.len(), 48);
+    assert_eq!(alone, run_on(5, &site, &scenario).records);
+    for record in &alone {
+        let row = scenario.row(Some(&record.row)).expect("a row of the scenario");
+        let again = replay(&site, &scenario, row, record.trial, None, |_| ()).expect("the map can be learned");
+        assert_eq!(again, *record);
+    }
+}
+
+#[test]
+fn more_trials_leave_the_first_ones_unchanged() {
+    let scenario = small_scenario();
+    let site = office_site(&scenario);
+    let few = run_on(2, &site, &Scenario { trials: 5, ..scenario.clone() }).records;
+    let many = run_on(2, &site, &scenario).records;
+    assert!(few.iter().all(|record| many.contains(record)));
+}
+
+#[test]
+fn a_noise_free_robot_on_a_node_is_right_at_the_first_look() {
+    let mut scenario = small_scenario();
+    scenario.uncertainty = Sources::none();
+    // Without a margin the first look that shows anything decides.
+    scenario.localizer.score_margin = 0.0;
+    let site = office_site(&scenario);
+    let mut tried = 0;
+    for polarity in [false, true] {
+        let row = Row { name: "on a node".to_owned(), start: Start::Near, polarity };
+        for (node, position) in site.nodes.iter().enumerate() {
+            for heading_deg in [0.0_f32, 75.0, 190.0, 300.0] {
+                let heading = Heading::new(Angle::from_degrees(heading_deg)).expect("finite");
+                let start = Some(TruePose { position: *position, heading });
+                let mut shown = Vec::new();
+                let watch = |look: &LookEvent<'_>| shown.push(look.localizer.scene_segment_count());
+                let record = replay(&site, &scenario, &row, 0, start, watch).expect("the map can be learned");
+                if shown[0] < 5 {
+                    continue; // A bare wall says nothing of the place.
+                }
+                assert_eq!((record.looks, record.answered_node), (1, Some(node as u32)), "{heading_deg} degrees");
+                tried += 1;
+            }
+        }
+    }
+    assert!(tried > 100, "only {tried} of 128 looks showed anything");
+}
+
+#[test]
+fn the_table_of_a_small_sweep_is_the_committed_one() {
+    let mut scenario = Scenario { trials: 40, trials_per_map: 20, ..small_scenario() };
+    let site = office_site(&scenario);
+    let mut table = String::from("sources  B_th   row                     right  of  looks  segments\n");
+    for (sources_name, sources) in [("none", Sources::none()), ("paper", Sources::default())] {
+        scenario.uncertainty = sources;
+        for score_margin in [0.0, 0.1] {
+            scenario.localizer.score_margin = score_margin;
+            let records = run_on(2, &site, &scenario).records;
+            for row in &scenario.rows {
+                let of_row: Vec<&TrialRecord> = records.iter().filter(|record| record.row == row.name).collect();
+                let right = of_row.iter().filter(|record| record.is_success).count();
+                let looks: u32 = of_row.iter().map(|record| record.looks).sum();
+                let segments: u32 = of_row.iter().map(|record| record.scene_segments).sum();
+                writeln!(
+                    table,
+                    "{sources_name:8} {score_margin:<6} {:23} {right:5} {:3}  {looks:5}  {segments:8}",
+                    row.name,
+                    of_row.len(),
+                )
+                .expect("a string takes everything");
+            }
+        }
+    }
+    insta::with_settings!({ snapshot_path => "../snapshots", prepend_module_to_snapshot => false }, {
+        insta::assert_snapshot!("small_sweep", table);
+    });
+}
