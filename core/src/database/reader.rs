@@ -143,14 +143,14 @@ impl<'a> Node<'a> {
         self.id
     }
 
-    /// Position in the world frame [m].
+    /// Position in the world frame \[m\].
     #[must_use]
     pub fn position(&self) -> Point2 {
         let [x, y] = self.entry.position_mm.map(|mm| mm.get() as f32 * 0.001);
         Point2::new(x, y)
     }
 
-    /// Its 3-D segments in the node frame [m]: origin at the node at camera height, axes parallel to the world's, z up.
+    /// Its 3-D segments in the node frame \[m\]: origin at the node at camera height, axes parallel to the world's, z up.
     pub fn segments(&self) -> impl ExactSizeIterator<Item = Segment3> + use<'a> {
         let point = |mm: [zerocopy::little_endian::I16; 3]| {
             let [x, y, z] = mm.map(|mm| f32::from(mm.get()) * 0.001);

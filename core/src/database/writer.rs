@@ -10,9 +10,9 @@ use zerocopy::little_endian::{I16, I32};
 /// What was learned at one node.
 #[derive(Debug, Clone, Copy)]
 pub struct NodeModel<'a> {
-    /// Position in the world frame [m], within 2000 km.
+    /// Position in the world frame \[m\], within 2000 km.
     pub position: Point2,
-    /// Its merged 3-D segments in the node frame [m] (see [`Node::segments`](super::Node::segments)), each coordinate
+    /// Its merged 3-D segments in the node frame \[m\] (see [`Node::segments`](super::Node::segments)), each coordinate
     /// within 32.767 m.
     pub segments: &'a [Segment3],
 }

@@ -43,25 +43,25 @@ impl PinholeCamera {
         Ok(Self { width_px, height_px, focal_length_px, principal_point_px })
     }
 
-    /// Image width [px].
+    /// Image width \[px\].
     #[must_use]
     pub const fn width_px(&self) -> u16 {
         self.width_px
     }
 
-    /// Image height [px].
+    /// Image height \[px\].
     #[must_use]
     pub const fn height_px(&self) -> u16 {
         self.height_px
     }
 
-    /// Focal length [px].
+    /// Focal length \[px\].
     #[must_use]
     pub const fn focal_length_px(&self) -> f32 {
         self.focal_length_px
     }
 
-    /// Where the optical axis meets the image [px].
+    /// Where the optical axis meets the image \[px\].
     #[must_use]
     pub const fn principal_point_px(&self) -> Point2 {
         self.principal_point_px
@@ -107,7 +107,7 @@ impl PinholeCamera {
         Some((inside(start.lerp(end, enter)), inside(start.lerp(end, leave))))
     }
 
-    /// Horizontal field of view [rad].
+    /// Horizontal field of view \[rad\].
     #[must_use]
     pub fn horizontal_field_of_view(&self) -> f32 {
         let left = math::atan2(self.principal_point_px.x, self.focal_length_px);

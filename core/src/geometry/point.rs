@@ -38,11 +38,11 @@ impl Point2 {
 /// A point or vector in space, in metres; its frame is named where it is used.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Point3 {
-    /// First coordinate [m].
+    /// First coordinate \[m\].
     pub x: f32,
-    /// Second coordinate [m].
+    /// Second coordinate \[m\].
     pub y: f32,
-    /// Third coordinate [m].
+    /// Third coordinate \[m\].
     pub z: f32,
 }
 
@@ -53,7 +53,7 @@ impl Point3 {
         Self { x, y, z }
     }
 
-    /// Distance to `other` [m].
+    /// Distance to `other` \[m\].
     #[must_use]
     pub fn distance(self, other: Self) -> f32 {
         let (x, y, z) = (other.x - self.x, other.y - self.y, other.z - self.z);

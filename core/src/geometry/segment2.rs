@@ -36,10 +36,10 @@ pub struct Segment2 {
 }
 
 impl Segment2 {
-    /// Largest magnitude of a coordinate [px]: the range of the fixed-point histograms.
+    /// Largest magnitude of a coordinate \[px\]: the range of the fixed-point histograms.
     pub const MAX_COORDINATE_PX: f32 = 2048.0;
 
-    /// Least length of a segment [px]: the resolution of the fixed-point histograms.
+    /// Least length of a segment \[px\]: the resolution of the fixed-point histograms.
     pub const MIN_LENGTH_PX: f32 = 0.0625;
 
     /// A segment from `start` to `end` in pixels.
@@ -61,13 +61,13 @@ impl Segment2 {
         Ok(Self { start, end, polarity })
     }
 
-    /// First end point [px].
+    /// First end point \[px\].
     #[must_use]
     pub const fn start(&self) -> Point2 {
         self.start
     }
 
-    /// Second end point [px].
+    /// Second end point \[px\].
     #[must_use]
     pub const fn end(&self) -> Point2 {
         self.end
@@ -79,7 +79,7 @@ impl Segment2 {
         self.polarity
     }
 
-    /// Length [px].
+    /// Length \[px\].
     #[must_use]
     pub fn length_px(&self) -> f32 {
         self.start.distance(self.end)

@@ -8,15 +8,15 @@ use core::fmt;
 pub struct StereoRig {
     /// Both cameras.
     pub camera: PinholeCamera,
-    /// Distance between the optical centres [m], positive.
+    /// Distance between the optical centres \[m\], positive.
     pub baseline_m: f32,
-    /// Height of the optical centres above the floor [m].
+    /// Height of the optical centres above the floor \[m\].
     pub camera_height_m: f32,
-    /// Least depth at which an edge is seen [m], positive.
+    /// Least depth at which an edge is seen \[m\], positive.
     pub near_limit_m: f32,
-    /// Least depth at which a stereo match is kept [m].
+    /// Least depth at which a stereo match is kept \[m\].
     pub nearest_model_m: f32,
-    /// Greatest depth at which a stereo match is kept [m].
+    /// Greatest depth at which a stereo match is kept \[m\].
     pub farthest_model_m: f32,
 }
 

@@ -34,7 +34,7 @@ pub struct Localized {
 /// A metric pose with its uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PoseEstimate {
-    /// Position in the world frame [m].
+    /// Position in the world frame \[m\].
     pub position: Point2,
     /// Heading at the last look.
     pub heading: Heading,

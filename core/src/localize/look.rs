@@ -37,9 +37,9 @@ pub struct Motion {
     pub turn: Angle,
     /// Standard deviation of its error.
     pub turn_standard_deviation: Angle,
-    /// The step made, in the robot's frame before the turn: x forward, y left [m].
+    /// The step made, in the robot's frame before the turn: x forward, y left \[m\].
     pub step_m: Point2,
-    /// Standard deviation of its error, along either axis [m].
+    /// Standard deviation of its error, along either axis \[m\].
     pub step_standard_deviation_m: f32,
 }
 

@@ -10,7 +10,7 @@ pub struct PghShape {
     /// Bins along the relative angle (paper: `n_angle`), 1 to 256; published optimum 32. Bin centres lie at whole
     /// multiples of the bin width, so that parallel and perpendicular lines fall on a centre, not on a border.
     pub angle_bins: u16,
-    /// Greatest perpendicular distance that is counted [px]; what lies beyond is cut off.
+    /// Greatest perpendicular distance that is counted \[px\]; what lies beyond is cut off.
     pub max_distance_px: f32,
     /// Whether distances have a sign.
     pub distance: DistanceKind,
@@ -64,7 +64,7 @@ impl PghShape {
         self.distance_bins as usize * self.angle_bins as usize
     }
 
-    /// Width of a distance bin [px].
+    /// Width of a distance bin \[px\].
     #[must_use]
     pub fn distance_bin_width_px(&self) -> f32 {
         let covered = match self.distance {
@@ -74,7 +74,7 @@ impl PghShape {
         covered / f32::from(self.distance_bins)
     }
 
-    /// The angle after which a line's direction repeats [rad]: 2 pi with polarity, else pi.
+    /// The angle after which a line's direction repeats \[rad\]: 2 pi with polarity, else pi.
     #[must_use]
     pub const fn period_radians(&self) -> f32 {
         if self.uses_polarity { core::f32::consts::TAU } else { core::f32::consts::PI }

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 pub(super) struct Attempt {
     /// The trial's line of trials.csv.
     pub(super) record: TrialRecord,
-    /// Distance from the true position to the answered node [m].
+    /// Distance from the true position to the answered node \[m\].
     answer_distance_m: Option<f64>,
     /// What happened, look by look.
     looks: Vec<LookExplanation>,

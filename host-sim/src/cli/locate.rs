@@ -26,10 +26,10 @@ pub(super) struct Locate {
     /// Trial: which start is drawn, and which noise.
     #[arg(long, value_name = "I", default_value_t = 0)]
     trial: u32,
-    /// Put the robot here [m] instead of at the trial's start.
+    /// Put the robot here \[m\] instead of at the trial's start.
     #[arg(long, value_name = "X,Y", value_parser = parse_place, allow_hyphen_values = true)]
     at: Option<Point2>,
-    /// With --at: the heading at the first look [degrees], counter-clockwise from +x.
+    /// With --at: the heading at the first look \[degrees\], counter-clockwise from +x.
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0, requires = "at", allow_hyphen_values = true)]
     heading_deg: f32,
     /// Folder for the drawings [default: locate-<scenario>-<trial>]; drawings of the same name are overwritten.

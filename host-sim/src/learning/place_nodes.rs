@@ -115,7 +115,7 @@ pub struct PlaceNodesError {
     pub count: usize,
     /// How many free cells there are.
     pub cell_count: usize,
-    /// The free area [m2].
+    /// The free area \[m2\].
     pub area_m2: f64,
 }
 

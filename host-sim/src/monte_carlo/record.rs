@@ -23,17 +23,17 @@ pub struct TrialRecord {
     pub trial: u32,
     /// Index of the map's noise draw that this trial used.
     pub map: u32,
-    /// True position of the left camera in the world frame [m].
+    /// True position of the left camera in the world frame \[m\].
     pub true_x_m: f32,
-    /// True position of the left camera in the world frame [m].
+    /// True position of the left camera in the world frame \[m\].
     pub true_y_m: f32,
-    /// True heading at the first look [degrees], counter-clockwise from +x.
+    /// True heading at the first look \[degrees\], counter-clockwise from +x.
     pub true_heading_deg: f32,
     /// The node nearest to the true position.
     pub nearest_node: u32,
     /// The second nearest node (equal to the nearest in a map of one node).
     pub second_nearest_node: u32,
-    /// Distance to the nearest node [m].
+    /// Distance to the nearest node \[m\].
     pub nearest_node_distance_m: f32,
     /// How the trial ended.
     pub outcome: Outcome,

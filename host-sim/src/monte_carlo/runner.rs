@@ -16,7 +16,7 @@ pub struct RunOutcome {
     pub records: Vec<TrialRecord>,
     /// Wall time of the localiser for each look of each record, in the same order.
     pub look_times: Vec<Vec<Duration>>,
-    /// Size of a map [bytes], the mean over all that were learned.
+    /// Size of a map \[bytes\], the mean over all that were learned.
     pub map_bytes: f64,
     /// Segments in the model of a node, the mean over all that were learned.
     pub segments_per_node: f64,

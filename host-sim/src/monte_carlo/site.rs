@@ -17,7 +17,7 @@ pub struct Site {
     pub free_space: FreeSpace,
     /// The robot's stereo rig.
     pub rig: StereoRig,
-    /// Where the nodes are, world frame [m].
+    /// Where the nodes are, world frame \[m\].
     pub nodes: Vec<Point2>,
     node_views: Vec<NodeViews>,
 }

@@ -8,7 +8,7 @@ use edgeloc::geometry::{Angle, Heading, Point2};
 /// The true pose of the left camera at the first look.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TruePose {
-    /// Position in the world frame [m].
+    /// Position in the world frame \[m\].
     pub position: Point2,
     /// Yaw of the optical axis.
     pub heading: Heading,

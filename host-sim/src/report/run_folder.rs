@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use thiserror::Error;
 
-/// Longest file read back [bytes]: a million trials and room to spare.
+/// Longest file read back \[bytes\]: a million trials and room to spare.
 const MAX_FILE_BYTES: u64 = 512 << 20;
 
 /// All that is known of a finished run.

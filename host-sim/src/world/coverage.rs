@@ -5,11 +5,11 @@ use edgeloc::geometry::Point2;
 /// Square cells over the floor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Grid {
-    /// West border [m].
+    /// West border \[m\].
     pub(super) west: f64,
-    /// South border [m].
+    /// South border \[m\].
     pub(super) south: f64,
-    /// Side of a cell [m].
+    /// Side of a cell \[m\].
     pub(super) cell_m: f64,
     /// Cells from west to east.
     pub(super) width: usize,
@@ -52,7 +52,7 @@ impl Grid {
     }
 }
 
-/// Heights from `low` to `high` [m].
+/// Heights from `low` to `high` \[m\].
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Slab {
     pub(super) low: f64,

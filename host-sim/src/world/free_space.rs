@@ -18,10 +18,10 @@ use edgeloc::geometry::{Point2, Point3};
 /// The most cells a grid may have, about 100 m by 100 m at 5 cm: bounds the memory that a world file can ask for.
 const MAX_CELL_COUNT: f64 = 4e6;
 
-/// How far from z = 0 a floor may lie [m].
+/// How far from z = 0 a floor may lie \[m\].
 const FLOOR_TOLERANCE_M: f64 = 0.1;
 
-/// Radius of the ball that finds the outside of the world [m]: it does not pass openings twice as wide.
+/// Radius of the ball that finds the outside of the world \[m\]: it does not pass openings twice as wide.
 const OUTSIDE_BALL_M: f64 = 1.25;
 
 /// In place of a number, for a cell that is not free.
@@ -30,11 +30,11 @@ const NOT_FREE: u32 = u32::MAX;
 /// What the robot needs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FreeSpaceOptions {
-    /// Radius of the robot [m], 0 to 5.
+    /// Radius of the robot \[m\], 0 to 5.
     pub robot_radius_m: f32,
-    /// Heights above the floor between which it must not touch anything [m]. Carpets and doorsteps are lower.
+    /// Heights above the floor between which it must not touch anything \[m\]. Carpets and doorsteps are lower.
     pub slice_m: (f32, f32),
-    /// Side of a cell [m], 0.01 to 1.
+    /// Side of a cell \[m\], 0.01 to 1.
     pub cell_m: f32,
 }
 
@@ -103,7 +103,7 @@ impl FreeSpace {
         self.grid.cell_at(point).is_some_and(|cell| self.numbers[cell] != NOT_FREE)
     }
 
-    /// Area of the free cells [m2].
+    /// Area of the free cells \[m2\].
     #[must_use]
     pub fn area_m2(&self) -> f64 {
         self.area_of(self.cells.len())
@@ -134,13 +134,13 @@ impl FreeSpace {
         self.grid.height
     }
 
-    /// South-west corner of the grid [m].
+    /// South-west corner of the grid \[m\].
     #[must_use]
     pub fn origin(&self) -> Point2 {
         Point2::new(self.grid.west as f32, self.grid.south as f32)
     }
 
-    /// Side of a cell [m].
+    /// Side of a cell \[m\].
     #[must_use]
     pub const fn cell_m(&self) -> f32 {
         self.options.cell_m
@@ -164,7 +164,7 @@ impl FreeSpace {
         self.other_regions.region_count
     }
 
-    /// Their area [m2].
+    /// Their area \[m2\].
     #[must_use]
     pub fn other_regions_m2(&self) -> f64 {
         self.area_of(self.other_regions.cell_count)
@@ -373,11 +373,11 @@ pub enum FreeSpaceError {
          {cell_m} m; leave out what is far from the building, check the unit of length, or ask for larger cells"
     )]
     TooLarge {
-        /// Extent along x [m].
+        /// Extent along x \[m\].
         width_m: f64,
-        /// Extent along y [m].
+        /// Extent along y \[m\].
         depth_m: f64,
-        /// Side of a cell [m].
+        /// Side of a cell \[m\].
         cell_m: f64,
         /// The most cells there may be.
         max_cell_count: usize,
@@ -391,7 +391,7 @@ pub enum FreeSpaceError {
     NoRoom {
         /// Name of the world.
         world: String,
-        /// Radius asked for [m].
+        /// Radius asked for \[m\].
         robot_radius_m: f32,
     },
 }

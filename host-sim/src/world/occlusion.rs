@@ -13,16 +13,16 @@
 use super::Surfaces;
 use edgeloc::geometry::Point3;
 
-/// A ray ends this much before the point looked at [m].
+/// A ray ends this much before the point looked at \[m\].
 pub const STOP_SHORT_M: f32 = 0.012;
 
-/// A point this near to the plane of a triangle is not hidden by it [m].
+/// A point this near to the plane of a triangle is not hidden by it \[m\].
 pub const SAME_PLANE_M: f32 = 0.001;
 
 /// Triangles reach this fraction of their sides beyond their border, so that no ray slips between neighbours.
 const SEAM: f32 = 2e-6;
 
-/// Boxes are larger than what they hold by this much [m], so that rounding never loses a hit.
+/// Boxes are larger than what they hold by this much \[m\], so that rounding never loses a hit.
 const BOX_MARGIN_M: f32 = 1e-4;
 
 /// Most triangles in a leaf, except where all centres coincide.

@@ -11,7 +11,7 @@ use super::occlusion::{Blocker, Occluders};
 use edgeloc::geometry::{Point3, Segment3};
 use std::ops::Range;
 
-/// Length of a sampled interval [m].
+/// Length of a sampled interval \[m\].
 const SAMPLE_SPACING_M: f32 = 0.1;
 
 /// Fewest and most intervals of an edge.
@@ -178,7 +178,7 @@ mod tests {
             edges
         }
 
-        /// How far the eye stands before a face [m]; negative behind it.
+        /// How far the eye stands before a face \[m\]; negative behind it.
         fn height_above(&self, (axis, side): (usize, f32), eye: Point3) -> f32 {
             let (half, offset) = (self.halves[axis], plus(eye, self.center, -1.0));
             let reach = half.distance(Point3::default());

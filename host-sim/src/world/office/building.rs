@@ -5,16 +5,16 @@ use super::layout::{DOOR_WIDTH_M, Layout, Rectangle, WALL_M, WINDOW_WIDTH_M};
 use super::{DEPTH_M, HEIGHT_M, LENGTH_M};
 use crate::world::template::Template;
 
-/// Thickness of the outer walls [m].
+/// Thickness of the outer walls \[m\].
 const OUTER_WALL_M: f32 = 0.2;
 
-/// Top of the skirting boards [m].
+/// Top of the skirting boards \[m\].
 const SKIRTING_M: f32 = 0.1;
 
-/// Distance between the joints of the ceiling [m].
+/// Distance between the joints of the ceiling \[m\].
 const CEILING_TILE_M: f32 = 0.6;
 
-/// A hole in a wall that runs along x: where it is along x and in height [m].
+/// A hole in a wall that runs along x: where it is along x and in height \[m\].
 #[derive(Debug, Clone, Copy)]
 struct Opening {
     west: f32,

@@ -6,13 +6,13 @@ use crate::world::template::Template;
 #[derive(Debug, Clone)]
 pub(super) struct Piece {
     pub(super) template: Template,
-    /// Along the wall [m].
+    /// Along the wall \[m\].
     pub(super) width: f32,
-    /// Out from the wall [m].
+    /// Out from the wall \[m\].
     pub(super) depth: f32,
-    /// Heights between which it covers the wall behind it [m].
+    /// Heights between which it covers the wall behind it \[m\].
     pub(super) heights: (f32, f32),
-    /// How much floor is kept clear before it [m].
+    /// How much floor is kept clear before it \[m\].
     pub(super) clearance: f32,
 }
 
@@ -31,19 +31,19 @@ pub(super) struct Furniture {
     pub(super) picture: Piece,
 }
 
-/// Height of a desk [m].
+/// Height of a desk \[m\].
 pub(super) const DESK_HEIGHT_M: f32 = 0.74;
 
-/// Height of each shelf of a bookcase on which things stand [m].
+/// Height of each shelf of a bookcase on which things stand \[m\].
 pub(super) const SHELF_HEIGHTS_M: [f32; 5] = [0.08, 0.46, 0.84, 1.22, 1.60];
 
-/// Clear height between two shelves [m].
+/// Clear height between two shelves \[m\].
 pub(super) const SHELF_CLEAR_M: f32 = 0.355;
 
-/// Depth of a bookcase [m].
+/// Depth of a bookcase \[m\].
 pub(super) const SHELF_DEPTH_M: f32 = 0.32;
 
-/// Lower and upper border of the notice board, between which sheets are pinned [m].
+/// Lower and upper border of the notice board, between which sheets are pinned \[m\].
 pub(super) const NOTICE_BOARD_HEIGHTS_M: (f32, f32) = (1.0, 1.9);
 
 impl Furniture {

@@ -7,25 +7,25 @@ use super::{HEIGHT_M, LENGTH_M};
 use crate::world::WireframeWorld;
 use crate::world::template::{Placement, Template};
 
-/// Height of a door opening [m].
+/// Height of a door opening \[m\].
 pub(super) const DOOR_HEIGHT_M: f32 = 2.05;
 
-/// Width of the casing round a door [m].
+/// Width of the casing round a door \[m\].
 pub(super) const CASING_M: f32 = 0.06;
 
-/// Lower and upper border of a window opening [m].
+/// Lower and upper border of a window opening \[m\].
 pub(super) const WINDOW_HEIGHTS_M: (f32, f32) = (0.9, 2.2);
 
-/// How far a radiator stands out from the wall [m].
+/// How far a radiator stands out from the wall \[m\].
 pub(super) const RADIATOR_DEPTH_M: f32 = 0.12;
 
-/// Width of a radiator [m].
+/// Width of a radiator \[m\].
 pub(super) const RADIATOR_WIDTH_M: f32 = 1.2;
 
-/// Depth of the glass behind the inner face of the wall [m].
+/// Depth of the glass behind the inner face of the wall \[m\].
 const REVEAL_M: f32 = 0.12;
 
-/// Distance between two lamps of the corridor [m].
+/// Distance between two lamps of the corridor \[m\].
 const LAMP_SPACING_M: f32 = 2.8;
 
 /// Adds every door, window, radiator and lamp of a floor plan to `world`.

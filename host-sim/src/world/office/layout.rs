@@ -3,19 +3,19 @@
 use super::{DEPTH_M, LENGTH_M};
 use crate::random::Stream;
 
-/// Thickness of the walls between rooms [m].
+/// Thickness of the walls between rooms \[m\].
 pub(super) const WALL_M: f32 = 0.1;
 
-/// Clear width of a door [m].
+/// Clear width of a door \[m\].
 pub(super) const DOOR_WIDTH_M: f32 = 0.9;
 
-/// Width of a window [m].
+/// Width of a window \[m\].
 pub(super) const WINDOW_WIDTH_M: f32 = 1.8;
 
 /// Rooms in one row.
 const ROOMS_IN_ROW: usize = 5;
 
-/// The most a wall between two rooms moves from the even grid, either way [m].
+/// The most a wall between two rooms moves from the even grid, either way \[m\].
 const WALL_SHIFT_M: f64 = 0.45;
 
 /// The rooms and the corridor between them.
@@ -27,7 +27,7 @@ pub(super) struct Layout {
     pub(super) rooms: Vec<Room>,
 }
 
-/// An area of floor between walls [m].
+/// An area of floor between walls \[m\].
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Rectangle {
     pub(super) west: f32,
@@ -47,7 +47,7 @@ pub(super) struct Room {
     pub(super) purpose: Purpose,
     /// The door to the corridor.
     pub(super) door: Door,
-    /// Middles of the windows in the outer wall, along x [m].
+    /// Middles of the windows in the outer wall, along x \[m\].
     pub(super) windows: Vec<f32>,
 }
 
@@ -65,11 +65,11 @@ pub(super) enum Purpose {
 /// A door whose leaf stands open into the room.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Door {
-    /// Middle of the opening along x [m].
+    /// Middle of the opening along x \[m\].
     pub(super) x: f32,
     /// Whether the hinges are on the east side of the opening.
     pub(super) hinges_east: bool,
-    /// How far the leaf is open [degrees].
+    /// How far the leaf is open \[degrees\].
     pub(super) open_deg: f32,
 }
 

@@ -21,13 +21,13 @@ use furniture::Furniture;
 use layout::Layout;
 use room::Furnisher;
 
-/// Length of the office along x, between the outer walls [m].
+/// Length of the office along x, between the outer walls \[m\].
 pub const LENGTH_M: f32 = 20.0;
 
-/// Depth of the office along y, between the outer walls [m].
+/// Depth of the office along y, between the outer walls \[m\].
 pub const DEPTH_M: f32 = 15.0;
 
-/// Height from the floor to the ceiling [m].
+/// Height from the floor to the ceiling \[m\].
 pub const HEIGHT_M: f32 = 2.5;
 
 /// What decides a generated office.

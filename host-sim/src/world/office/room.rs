@@ -9,13 +9,13 @@ use crate::random::Stream;
 use crate::world::WireframeWorld;
 use crate::world::template::Placement;
 
-/// Depth of floor kept clear inside a door [m].
+/// Depth of floor kept clear inside a door \[m\].
 const DOOR_CLEARANCE_M: f32 = 1.15;
 
-/// Half the width of a door with its casing [m].
+/// Half the width of a door with its casing \[m\].
 const DOOR_HALF_M: f32 = 0.5 * DOOR_WIDTH_M + CASING_M;
 
-/// Heights that a door with its casing covers [m].
+/// Heights that a door with its casing covers \[m\].
 const DOOR_HEIGHTS_M: (f32, f32) = (0.0, DOOR_HEIGHT_M + CASING_M);
 
 /// Furnishes the rooms of one office.

@@ -9,7 +9,7 @@ use crate::world::template::Placement;
 /// How often a place is sought for a piece before the room does without it.
 const ATTEMPTS: usize = 80;
 
-/// Least distance between two pieces [m].
+/// Least distance between two pieces \[m\].
 pub(super) const GAP_M: f32 = 0.04;
 
 /// The four walls of a room and the floor between them, with what is there already.
@@ -37,12 +37,12 @@ struct Wall {
     left_end: [f32; 2],
     quarters: u8,
     length: f32,
-    /// Pieces stand this far from it [m].
+    /// Pieces stand this far from it \[m\].
     setback: f32,
     covered: Vec<Covered>,
 }
 
-/// A part of a wall behind something: along the wall from its left end, and in height [m].
+/// A part of a wall behind something: along the wall from its left end, and in height \[m\].
 #[derive(Debug, Clone, Copy)]
 struct Covered {
     from: f32,
