@@ -2,12 +2,13 @@
 
 use edgeloc_sim::monte_carlo::{SuccessRate, TrialRecord};
 use edgeloc_sim::scenario::Scenario;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 use std::collections::BTreeMap;
+use std::fmt::Write;
 use std::sync::Mutex;
 use std::time::Duration;
 
-const BAR: &str = "{bar:24} {pos}/{len} trials, {per_sec}, {eta} to go  {msg}";
+const BAR: &str = "{bar:24} {pos}/{len} trials, {rate}, {eta} to go  {msg}";
 
 /// A turning wheel beside what is being done, until it is dropped.
 pub(super) fn wheel(what: &'static str) -> Wheel {
@@ -37,6 +38,9 @@ impl TrialProgress {
     /// The bar of all trials of a scenario.
     pub(super) fn new(scenario: &Scenario) -> Self {
         let style = ProgressStyle::with_template(BAR).unwrap_or_else(|_| ProgressStyle::default_bar());
+        let style = style.with_key("rate", |state: &ProgressState, output: &mut dyn Write| {
+            let _ = write!(output, "{:.1}/s", state.per_sec());
+        });
         let bar = ProgressBar::new(u64::from(scenario.trials) * scenario.rows.len() as u64).with_style(style);
         bar.enable_steady_tick(Duration::from_millis(200));
         Self { bar, rates: Mutex::default() }

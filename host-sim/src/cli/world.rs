@@ -5,7 +5,7 @@ use super::worlds;
 use clap::{Args, Subcommand};
 use edgeloc::geometry::{Angle, Heading, Point2, Point3, StereoRig};
 use edgeloc_sim::camera;
-use edgeloc_sim::report::{FloorPlan, WorldFacts, scene_drawing, sight, to_svg_file};
+use edgeloc_sim::report::{FloorPlan, WorldFacts, scene_drawing, to_svg_file};
 use edgeloc_sim::scenario::WorldChoice;
 use edgeloc_sim::world::import::{ImportOptions, ImportReport, UpAxis, import};
 use edgeloc_sim::world::{FreeSpace, FreeSpaceOptions, Occluders, ViewpointVisibility, WireframeWorld, file, office};
@@ -150,7 +150,7 @@ fn describe_import(report: &ImportReport) -> Result<()> {
 /// Describe a world: edges, surfaces, size, free space.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  edgeloc world info small_house.edgeworld\n  edgeloc world info office-7.edgeworld --format json"
+    after_help = "Examples:\n  edgeloc world info small_house.edgeworld\n  edgeloc world info office-7.edgeworld --format json\n\nJSON (--format json): file, name, origin, edges, triangles, checksum, edge_length_m, min_m and max_m (x, y, z), free_space (area_m2, description) or free_space_problem."
 )]
 pub(super) struct Info {
     /// World file (.edgeworld).
@@ -197,7 +197,7 @@ impl View {
         console::check_overwrite(&path, self.force)?;
         let drawing = match self.eye {
             Some(eye) => self.camera_view(&world, eye)?,
-            None => plan(&world, None),
+            None => plan(&world),
         };
         console::write_file(&path, to_svg_file(drawing).as_bytes())?;
         console::print(&format!("drawing: {}", path.display()))
@@ -217,15 +217,11 @@ impl View {
     }
 }
 
-/// The plan of a world with its free space, if it has any, and a robot, if there is one.
-fn plan(world: &WireframeWorld, robot: Option<(Point2, f64)>) -> svg::Document {
+/// The plan of a world with its free space, if it has any.
+fn plan(world: &WireframeWorld) -> svg::Document {
     let free = FreeSpace::of(world, &FreeSpaceOptions::default()).ok().map(|free| worlds::free_cells(&free));
     let plan = FloorPlan::new(Some(world), free.as_ref(), &[]);
-    let drawing = plan.canvas().add(plan.background()).add(plan.scale_bar());
-    match robot {
-        Some((place, heading_deg)) => drawing.add(sight(&plan, place, heading_deg)),
-        None => drawing,
-    }
+    plan.canvas().add(plan.background()).add(plan.scale_bar())
 }
 
 /// Where a new world goes.

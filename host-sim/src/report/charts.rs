@@ -7,7 +7,7 @@ use crate::scenario::Row;
 use svg::Node;
 use svg::node::element::{Circle, Group, Path, Rectangle, SVG};
 
-/// Borders of the distance bins [m]; finer where near starts lie.
+/// Borders of the distance bins in metres; finer where near starts lie.
 const DISTANCE_BORDERS_M: [f64; 12] = [0.0, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0, 3.0];
 /// Bins of fewer trials say nothing and are left out.
 const MIN_TRIALS_PER_BIN: u64 = 5;

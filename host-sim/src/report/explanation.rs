@@ -15,10 +15,10 @@ use svg::node::element::{Circle, Group, Path, Rectangle, SVG};
 /// Nodes named in the words about a look.
 const NAMED_NODES: usize = 5;
 
-/// Width of the drawing of a look [px].
+/// Width in pixels of the drawing of a look.
 const WIDTH_PX: f64 = 1000.0;
 
-/// Width of the camera's image in it [px].
+/// Width in pixels of the camera's image in it.
 const IMAGE_WIDTH_PX: f64 = 560.0;
 
 /// What happened at one look.
@@ -26,7 +26,7 @@ const IMAGE_WIDTH_PX: f64 = 560.0;
 pub struct LookExplanation {
     /// Look, from 1.
     pub look: usize,
-    /// True heading of the optical axis [degrees].
+    /// True heading of the optical axis in degrees.
     pub heading_deg: f64,
     /// Segments that the camera saw.
     pub seen_segments: usize,

@@ -10,7 +10,7 @@ use svg::node::element::{Circle, Group, Path, SVG};
 
 /// Width of a plan [px of its frame].
 const WIDTH_PX: f64 = 1000.0;
-/// Room around the world [m].
+/// Room around the world in metres.
 const MARGIN_M: f64 = 0.5;
 /// Greatest height to width; a taller world is drawn narrower.
 const MAX_ASPECT: f64 = 1.5;
@@ -33,7 +33,7 @@ pub struct FreeCells {
     pub centers: Vec<Point2>,
     /// A corner of the grid they lie in, world frame.
     pub origin: Point2,
-    /// Side of a cell [m].
+    /// Side of a cell in metres.
     pub side_m: f64,
 }
 
@@ -64,19 +64,19 @@ impl FloorPlan {
         drawing(self.width_px(), self.height_px())
     }
 
-    /// Width of the drawing [px].
+    /// Width of the drawing in pixels.
     #[must_use]
     pub fn width_px(&self) -> f64 {
         self.length_px(self.size_m.0)
     }
 
-    /// Height of the drawing [px].
+    /// Height of the drawing in pixels.
     #[must_use]
     pub fn height_px(&self) -> f64 {
         self.length_px(self.size_m.1)
     }
 
-    /// Where a point of the world frame lies in the drawing [px].
+    /// Where a point of the world frame lies, in pixels of the drawing.
     #[must_use]
     pub fn to_px(&self, point: Point2) -> (f64, f64) {
         let x = (f64::from(point.x) - self.min_m.0) * self.px_per_m;
@@ -84,7 +84,7 @@ impl FloorPlan {
         (tidy(x), tidy(y))
     }
 
-    /// A length of the world in the drawing [px].
+    /// A length of the world, in pixels of the drawing.
     #[must_use]
     pub fn length_px(&self, length_m: f64) -> f64 {
         tidy(length_m * self.px_per_m)

@@ -5,9 +5,9 @@ use crate::scenario::{Scenario, Start};
 use edgeloc::geometry::Point2;
 use serde::{Deserialize, Serialize};
 
-/// The paper's own success rate in simulation, n > 900 (section 5) [fraction].
+/// The paper's own success rate in simulation, a fraction; n > 900 (section 5).
 pub const PAPER_RATE: f64 = 0.9282;
-/// The 95 % Wilson interval of [`PAPER_RATE`] at the stated number of trials [fractions].
+/// The 95 % Wilson interval of [`PAPER_RATE`] at the stated number of trials, as fractions.
 pub const PAPER_INTERVAL: (f64, f64) = (0.909, 0.943);
 
 /// The figures of a run.
@@ -19,11 +19,11 @@ pub struct Summary {
     pub nodes: usize,
     /// The map as learned, mean over its noise draws.
     pub map: MapFacts,
-    /// Success rate of blind guessing: two of the nodes are right [fraction].
+    /// Success rate of blind guessing, a fraction: two of the nodes are right.
     pub chance_rate: f64,
-    /// The paper's success rate [fraction].
+    /// The paper's success rate, a fraction.
     pub paper_rate: f64,
-    /// Lower and upper end of its 95 % interval [fraction].
+    /// Lower and upper end of its 95 % interval, as fractions.
     pub paper_interval: (f64, f64),
     /// One entry a row, in the scenario's order.
     pub rows: Vec<RowSummary>,
@@ -51,11 +51,11 @@ pub struct RowSummary {
     pub trials: u64,
     /// Trials that ended at one of the two nearest nodes.
     pub successes: u64,
-    /// Successes per trial [fraction]; none without trials.
+    /// Successes per trial, a fraction; none without trials.
     pub success_rate: Option<f64>,
-    /// Lower end of the 95 % Wilson interval [fraction].
+    /// Lower end of the 95 % Wilson interval, a fraction.
     pub success_rate_low: f64,
-    /// Upper end of the 95 % Wilson interval [fraction].
+    /// Upper end of the 95 % Wilson interval, a fraction.
     pub success_rate_high: f64,
     /// Trials answered "I can't tell".
     pub unknown: u64,
@@ -67,9 +67,9 @@ pub struct RowSummary {
     pub median_looks: f64,
     /// Mean image segments of a look that entered the matching.
     pub mean_segments_per_look: f64,
-    /// Mean distance from the true position to the nearest node [m].
+    /// Mean distance from the true position to the nearest node in metres.
     pub mean_nearest_node_distance_m: f64,
-    /// Median distance from the true position to the answered node [m]; none without answers.
+    /// Median distance from the true position to the answered node in metres; none without answers.
     pub median_answer_distance_m: Option<f64>,
 }
 
@@ -126,7 +126,7 @@ impl Summary {
     }
 }
 
-/// Distance from the true position to the answered node [m].
+/// Distance from the true position to the answered node in metres.
 #[must_use]
 pub fn answer_distance_m(record: &TrialRecord, nodes: &[Point2]) -> Option<f64> {
     let answered = nodes.get(record.answered_node? as usize)?;

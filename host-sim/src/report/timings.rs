@@ -8,9 +8,9 @@ use std::time::Duration;
 /// Wall times of a run.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct RunTimings {
-    /// Making the world ready: free space, nodes, what is seen from each [s].
+    /// Making the world ready (free space, nodes, what is seen from each), in seconds.
     pub prepare_s: f64,
-    /// Learning all maps and running all trials [s].
+    /// Learning all maps and running all trials, in seconds.
     pub trials_s: f64,
     /// One entry a row.
     pub rows: Vec<RowTimings>,
@@ -21,11 +21,11 @@ pub struct RunTimings {
 pub struct RowTimings {
     /// Name of the row.
     pub row: String,
-    /// Mean [s].
+    /// Mean, in seconds.
     pub mean_s_per_look: f64,
-    /// Median [s].
+    /// Median, in seconds.
     pub median_s_per_look: f64,
-    /// 95 of 100 looks take at most this [s].
+    /// 95 of 100 looks take at most this, in seconds.
     pub p95_s_per_look: f64,
 }
 
@@ -58,7 +58,7 @@ impl RunTimings {
         Self { prepare_s: prepare.as_secs_f64(), trials_s: trials.as_secs_f64(), rows }
     }
 
-    /// Wall time of the run [s].
+    /// Wall time of the run, in seconds.
     #[must_use]
     pub fn total_s(&self) -> f64 {
         self.prepare_s + self.trials_s

@@ -8,7 +8,7 @@ use std::path::Path;
 use std::sync::Arc;
 use toml::de::{DeTable, DeValue};
 
-/// Longest scenario file [bytes].
+/// Longest scenario file in bytes.
 const MAX_FILE_BYTES: u64 = 1 << 20;
 
 impl Scenario {

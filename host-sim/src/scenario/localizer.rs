@@ -13,11 +13,11 @@ pub struct LocalizerSettings {
     pub kind: LocalizerKind,
     /// B_th: how far a node's score may lie below the leader's at the first look (paper, section 3.3).
     pub score_margin: f64,
-    /// Turn before the next look [degrees], counter-clockwise.
+    /// Turn before the next look in degrees, counter-clockwise.
     pub turn_deg: f64,
     /// Looks after which the leading node is the answer.
     pub max_looks: u16,
-    /// Shorter image segments are dropped [px].
+    /// Shorter image segments are dropped in pixels.
     pub min_length_px: f64,
     /// Image segments this close to the horizontal are dropped on both sides [degrees]: stereo models lack them.
     pub horizontal_exclusion_deg: f64,
@@ -82,7 +82,7 @@ pub struct PghSettings {
     pub distance_bins: u16,
     /// Bins of the relative angle; 32 in the paper.
     pub angle_bins: u16,
-    /// Greatest perpendicular distance counted [px].
+    /// Greatest perpendicular distance counted in pixels.
     pub max_distance_px: f64,
     /// Whether the two sides of the reference line count apart.
     pub signed: bool,

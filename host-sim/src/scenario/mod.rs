@@ -34,7 +34,7 @@ pub struct Scenario {
     pub trials: u32,
     /// Trials that share one draw of the map's noise; then the world is learned anew.
     pub trials_per_map: u32,
-    /// Greatest distance from a node of a start of [`Start::Near`] [m].
+    /// Greatest distance from a node of a start of [`Start::Near`] in metres.
     pub near_radius_m: f64,
     /// The world.
     pub world: WorldChoice,

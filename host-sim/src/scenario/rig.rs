@@ -7,25 +7,25 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RigSettings {
-    /// Image width [px].
+    /// Image width in pixels.
     pub width_px: u16,
-    /// Image height [px].
+    /// Image height in pixels.
     pub height_px: u16,
-    /// Focal length [px].
+    /// Focal length in pixels.
     pub focal_length_px: f64,
-    /// Column where the optical axis meets the image [px].
+    /// Column where the optical axis meets the image in pixels.
     pub principal_point_x_px: f64,
-    /// Row where the optical axis meets the image [px].
+    /// Row where the optical axis meets the image in pixels.
     pub principal_point_y_px: f64,
-    /// Distance between the optical centres [m].
+    /// Distance between the optical centres in metres.
     pub baseline_m: f64,
-    /// Height of the optical centres above the floor [m].
+    /// Height of the optical centres above the floor in metres.
     pub camera_height_m: f64,
-    /// Least depth at which an edge is seen [m].
+    /// Least depth at which an edge is seen in metres.
     pub near_limit_m: f64,
-    /// Least depth at which a stereo match is kept [m].
+    /// Least depth at which a stereo match is kept in metres.
     pub nearest_model_m: f64,
-    /// Greatest depth at which a stereo match is kept [m].
+    /// Greatest depth at which a stereo match is kept in metres.
     pub farthest_model_m: f64,
 }
 
