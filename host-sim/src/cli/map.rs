@@ -43,16 +43,25 @@ pub(super) struct Info {
 
 impl Info {
     fn execute(&self) -> Result<()> {
-        let mut bytes = Vec::new();
-        std::fs::File::open(&self.file)
-            .and_then(|file| file.take(MAX_MAP_BYTES + 1).read_to_end(&mut bytes))
+        let bytes = read(&self.file)
             .into_diagnostic()
-            .wrap_err_with(|| format!("{} can't be read", self.file.display()))?;
-        if bytes.len() as u64 > MAX_MAP_BYTES {
-            return Err(miette!(help = "maps end in .edgemap; `edgeloc learn` writes them", "the file is above 1 GB"));
-        }
+            .wrap_err_with(|| format!("the map {} can't be read", self.file.display()))?;
         MapDescription::new(&self.file, &bytes)?.print(self.format)
     }
+}
+
+/// The bytes of a map file.
+fn read(path: &Path) -> std::io::Result<Vec<u8>> {
+    // Asked before opening: a pipe would wait for a writer, a device never end.
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(std::io::Error::other("it is not a file"));
+    }
+    let mut bytes = Vec::new();
+    std::fs::File::open(path)?.take(MAX_MAP_BYTES + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > MAX_MAP_BYTES {
+        return Err(std::io::Error::other("it is larger than any map (1 GiB)"));
+    }
+    Ok(bytes)
 }
 
 /// What is known of a map, as `--format json` prints it.

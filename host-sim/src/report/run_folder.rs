@@ -160,7 +160,13 @@ impl RunFolder {
     fn read(&self, file: &str) -> Result<String, RunFolderError> {
         let path = self.path.join(file);
         let mut text = String::new();
-        fs::File::open(&path)
+        // Asked before opening: a pipe would wait for a writer.
+        let is_file = fs::metadata(&path).and_then(|metadata| match metadata.is_file() {
+            true => Ok(()),
+            false => Err(std::io::Error::other("it is not a file")),
+        });
+        is_file
+            .and_then(|()| fs::File::open(&path))
             .and_then(|file| file.take(MAX_FILE_BYTES).read_to_string(&mut text))
             .map_err(|source| RunFolderError::Read { path, source })?;
         Ok(text)

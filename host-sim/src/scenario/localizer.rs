@@ -19,7 +19,7 @@ pub struct LocalizerSettings {
     pub max_looks: u16,
     /// Shorter image segments are dropped in pixels.
     pub min_length_px: f64,
-    /// Image segments this close to the horizontal are dropped on both sides [degrees]: stereo models lack them.
+    /// Image segments this close to the horizontal are dropped on both sides in degrees: stereo models lack them.
     pub horizontal_exclusion_deg: f64,
     /// The longest segments of a scene that enter the matching.
     pub max_segments: u16,
