@@ -44,17 +44,27 @@ impl Lengths {
 /// Number of `u64` that a localiser works on.
 pub(super) const fn memory_len(config: &LocalizerConfig, node_count: usize) -> usize {
     let lengths = Lengths::of(config, node_count);
-    2 * words::<Line>(lengths.lines)
-        + words::<i32>(lengths.masses)
-        + words::<BinPair>(lengths.pairs)
-        + words::<u32>(lengths.lines)
-        + words::<PanelRow>(lengths.panel_rows)
-        + words::<i32>(lengths.lines)
-        + words::<NodeScore>(lengths.nodes)
+    let parts = [
+        words::<Line>(lengths.lines),
+        words::<Line>(lengths.lines),
+        words::<i32>(lengths.masses),
+        words::<BinPair>(lengths.pairs),
+        words::<u32>(lengths.lines),
+        words::<PanelRow>(lengths.panel_rows),
+        words::<i32>(lengths.lines),
+        words::<NodeScore>(lengths.nodes),
+    ];
+    let (mut total, mut part) = (0_usize, 0);
+    while part < parts.len() {
+        total = total.saturating_add(parts[part]);
+        part += 1;
+    }
+    total
 }
 
+/// Saturates, so that a configuration out of range asks for more memory than there is and is refused.
 const fn words<T>(count: usize) -> usize {
-    (count * size_of::<T>()).div_ceil(size_of::<u64>())
+    count.saturating_mul(size_of::<T>()).div_ceil(size_of::<u64>())
 }
 
 impl<'m> Workspace<'m> {

@@ -45,7 +45,7 @@ impl<'m> RootRows<'m> {
     /// Bin pairs that always suffice for `lines` rows of `bins` bins.
     #[must_use]
     pub const fn pairs_len(lines: usize, bins: usize) -> usize {
-        lines * pair_count(bins)
+        lines.saturating_mul(pair_count(bins))
     }
 
     /// No rows yet; room for as many as `ends` holds.

@@ -33,7 +33,7 @@ impl<'m> HistogramBuilder<'m> {
     /// Number of `i32` a builder for `shape` works on.
     #[must_use]
     pub const fn memory_len(shape: &PghShape) -> usize {
-        (shape.distance_bins as usize + 2) * shape.angle_bins as usize
+        (shape.distance_bins as usize + 2).saturating_mul(shape.angle_bins as usize)
     }
 
     /// A builder for a [checked](PghShape::checked) shape, working in `memory`.

@@ -61,7 +61,7 @@ impl PghShape {
     /// Number of bins in all.
     #[must_use]
     pub const fn bin_count(&self) -> usize {
-        self.distance_bins as usize * self.angle_bins as usize
+        (self.distance_bins as usize).saturating_mul(self.angle_bins as usize)
     }
 
     /// Width of a distance bin \[px\].
