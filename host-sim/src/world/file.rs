@@ -5,8 +5,8 @@
 //! | 0 | 8 | magic, the ASCII text `edgewrld` |
 //! | 8 | 4 | version, u32: 1 |
 //! | 12 | 4 | CRC-32 (ISO-HDLC, as in zip) of all bytes from offset 16 to the end, u32 |
-//! | 16 | 4 | length of the name N in bytes, u32 |
-//! | 20 | 4 | length of the origin O in bytes, u32 |
+//! | 16 | 4 | length N of the name in bytes, u32 |
+//! | 20 | 4 | length O of the origin in bytes, u32 |
 //! | 24 | 4 | count of edges E, u32 |
 //! | 28 | 4 | count of vertices V, u32 |
 //! | 32 | 4 | count of triangles T, u32 |
@@ -35,10 +35,10 @@ const VERTEX_BYTES: usize = 12;
 const TRIANGLE_BYTES: usize = 12;
 const CRC: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
 
-/// Largest world file in bytes: 2 GiB, some 50 million triangles.
+/// Largest world file, in bytes: 2 GiB, some 50 million triangles.
 const MAX_FILE_BYTES: u64 = 2 << 30;
 
-/// Largest magnitude of a coordinate in metres.
+/// Largest magnitude of a coordinate, in metres.
 const MAX_COORDINATE_M: f32 = 100_000.0;
 
 /// Why a world file can't be written or read.
@@ -193,7 +193,7 @@ fn push_point(bytes: &mut Vec<u8>, point: Point3) {
     bytes.extend([point.x, point.y, point.z].iter().flat_map(|coordinate| coordinate.to_le_bytes()));
 }
 
-/// Length of a file with these header fields in bytes.
+/// Length of a file with these header fields, in bytes.
 fn file_length([name, origin, edges, vertices, triangles]: [u32; 5]) -> u64 {
     // Five counts below 2^32 of at most 28 bytes each stay far below 2^64.
     HEADER_BYTES as u64

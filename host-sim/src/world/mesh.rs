@@ -32,4 +32,26 @@ impl TriangleMesh {
         self.vertices.push(point);
         index
     }
+
+    /// Triangles and lines together: what limits count.
+    pub(crate) fn element_count(&self) -> usize {
+        self.triangles.len() + self.lines.len()
+    }
+
+    /// The same mesh without the vertices that no triangle or line uses.
+    pub(crate) fn without_unused_vertices(mut self) -> Self {
+        let mut new_index = vec![None; self.vertices.len()];
+        let mut vertices = Vec::new();
+        let corners = self.triangles.iter_mut().flat_map(|triangle| &mut triangle.corners);
+        for corner in corners.chain(self.lines.iter_mut().flatten()) {
+            let old = *corner as usize;
+            // The kept vertices are no more than before, so their count fits a u32 too.
+            *corner = *new_index[old].get_or_insert_with(|| {
+                vertices.push(self.vertices[old]);
+                vertices.len() as u32 - 1
+            });
+        }
+        self.vertices = vertices;
+        self
+    }
 }

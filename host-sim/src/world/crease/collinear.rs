@@ -9,12 +9,14 @@ use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use std::collections::HashMap;
 
-/// Pieces this near each other touch, and pieces this near a line lie on it in metres.
+/// Pieces this near each other touch, and pieces this near a line lie on it, in metres.
 const TOLERANCE_M: f64 = 1e-3;
 /// Least cosine between the directions of pieces of one run: 3 degrees.
 const COS_ALONG: f64 = 0.998_63;
-/// Candidates looked at in all before merging stops.
-const BUDGET: u64 = 400_000_000;
+/// Candidates looked at per piece, on average, before merging stops; furnished buildings need up to 120.
+const BUDGET_PER_PIECE: u64 = 1000;
+/// Candidates looked at beyond that, so that small meshes never run out.
+const BUDGET_BASE: u64 = 1_000_000;
 
 /// The merged pieces, longest first piece first, and whether the budget sufficed.
 pub(super) fn merge(pieces: &[Piece]) -> (Vec<Piece>, bool) {
@@ -115,12 +117,13 @@ struct EndPointSearch<'a> {
     budget: u64,
 }
 
-/// Width of the smallest cells in metres.
+/// Width of the smallest cells, in metres.
 const CELL_M: f64 = 0.01;
 
 impl<'a> EndPointSearch<'a> {
     fn new(pieces: &'a [Piece]) -> Self {
-        Self { pieces, grids: BTreeMap::new(), budget: BUDGET }
+        let budget = BUDGET_BASE + BUDGET_PER_PIECE * pieces.len() as u64;
+        Self { pieces, grids: BTreeMap::new(), budget }
     }
 
     /// Pieces, some perhaps twice, with an end point on the piece at `index`.

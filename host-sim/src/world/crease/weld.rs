@@ -7,10 +7,10 @@ use super::super::mesh::TriangleMesh;
 use nalgebra::Vector3;
 use std::collections::{HashMap, HashSet};
 
-/// Vertices closer than this are one in metres.
+/// Vertices closer than this are one, in metres.
 const WELD_M: f64 = 1e-3;
 
-/// A face whose double area is below this has no usable normal in square metres.
+/// A face whose double area is below this has no usable normal; in square metres.
 const LEAST_DOUBLE_AREA_M2: f64 = 1e-12;
 
 /// A mesh whose faces share vertices.

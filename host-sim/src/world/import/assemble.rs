@@ -3,11 +3,11 @@
 use super::super::crease;
 use super::super::mesh::TriangleMesh;
 use super::super::{Surfaces, WireframeWorld};
-use super::session::{MAX_TRIANGLES, PlacedModel};
+use super::session::PlacedModel;
 use super::{BoundingBox, ImportOptions, ImportProblem, ImportReport, ModelReport};
 use edgeloc::geometry::{Point3, Segment3};
 
-/// Largest magnitude of a coordinate in metres; more means a wrong unit, and costs f32 its millimetres.
+/// Largest magnitude of a coordinate, in metres; more means a wrong unit, and costs f32 its millimetres.
 const MAX_COORDINATE_M: f64 = 10_000.0;
 
 /// The world so far.
@@ -16,13 +16,13 @@ pub(super) struct Assembly {
     edges: Vec<Segment3>,
     vertices: Vec<Point3>,
     triangles: Vec<[u32; 3]>,
-    read_triangle_count: usize,
+    element_count: usize,
 }
 
 impl Assembly {
-    /// Triangles read so far, those left out included.
-    pub(super) fn triangle_count(&self) -> usize {
-        self.read_triangle_count
+    /// Triangles and lines read so far, those left out included.
+    pub(super) fn element_count(&self) -> usize {
+        self.element_count
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -30,19 +30,10 @@ impl Assembly {
     }
 
     /// Adds `model` and its entry in the report.
-    pub(super) fn add(
-        &mut self,
-        mut model: PlacedModel,
-        options: &ImportOptions,
-        report: &mut ImportReport,
-    ) -> Result<(), ImportProblem> {
+    pub(super) fn add(&mut self, mut model: PlacedModel, options: &ImportOptions, report: &mut ImportReport) {
         let place = || format!("model '{}'", model.name);
         let triangle_count = model.mesh.triangles.len();
-        self.read_triangle_count += triangle_count;
-        if self.read_triangle_count > MAX_TRIANGLES {
-            let what = format!("brings the world beyond {MAX_TRIANGLES} triangles");
-            return Err(ImportProblem::new(place(), what, "simplify its meshes"));
-        }
+        self.element_count += model.mesh.element_count();
         let bad_count = drop_far_coordinates(&mut model.mesh);
         if bad_count > 0 {
             let what = format!(
@@ -73,10 +64,9 @@ impl Assembly {
             bounding_box: BoundingBox::around(used_points(&extraction)),
         });
 
-        let first = u32::try_from(self.vertices.len()).expect("20 million triangles have fewer than 2^32 corners");
+        let first = u32::try_from(self.vertices.len()).expect("limited triangles have fewer than 2^32 corners");
         self.vertices.extend(extraction.vertices);
         self.triangles.extend(extraction.triangles.iter().map(|triangle| triangle.map(|index| index + first)));
-        Ok(())
     }
 
     pub(super) fn into_world(self, name: String, origin: String) -> WireframeWorld {
@@ -87,18 +77,18 @@ impl Assembly {
 
 /// Removes triangles and lines with a coordinate no world has; gives how many.
 fn drop_far_coordinates(mesh: &mut TriangleMesh) -> usize {
-    let vertices = &mut mesh.vertices;
+    let vertices = &mesh.vertices;
     let fits: Vec<bool> =
         vertices.iter().map(|vertex| vertex.iter().all(|&coordinate| coordinate.abs() <= MAX_COORDINATE_M)).collect();
-    let before = mesh.triangles.len() + mesh.lines.len();
+    let before = mesh.element_count();
     mesh.triangles.retain(|triangle| triangle.corners.iter().all(|&index| fits[index as usize]));
     mesh.lines.retain(|line| line.iter().all(|&index| fits[index as usize]));
-    for (vertex, fits) in vertices.iter_mut().zip(fits) {
+    for (vertex, fits) in mesh.vertices.iter_mut().zip(fits) {
         if !fits {
             *vertex = nalgebra::Vector3::zeros();
         }
     }
-    before - mesh.triangles.len() - mesh.lines.len()
+    before - mesh.element_count()
 }
 
 /// The points that a triangle or a segment reaches.

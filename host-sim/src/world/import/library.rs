@@ -10,7 +10,7 @@ use std::fs::{self, File};
 use std::io::Read;
 use std::path::{Component, Path, PathBuf};
 
-/// Largest file read in bytes: 128 MiB, thirty times the largest mesh of a furnished flat.
+/// Largest file read, in bytes: 128 MiB, thirty times the largest mesh of a furnished flat.
 const MAX_FILE_BYTES: u64 = 128 << 20;
 
 /// Most bytes read in one import: 1 GiB.

@@ -12,13 +12,16 @@
 
 mod assemble;
 mod collada;
+mod gltf;
 mod library;
+mod obj;
 mod placement;
 mod polygon;
 mod primitives;
 mod report;
 mod sdf;
 mod session;
+mod topology;
 mod xml;
 
 pub use placement::UpAxis;
@@ -33,15 +36,15 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ImportOptions {
-    /// Least length of an edge that enters the world in metres, 0 to 100; default 0.10, which leaves the paper's number of
+    /// Least length of an edge that enters the world, in metres, 0 to 100; default 0.10, which leaves the paper's number of
     /// features in a flat. Shorter ones are counted in the report.
     pub min_edge_m: f64,
-    /// Least angle between two faces that shows as an edge in degrees, 0 to 180 exclusive; default 30.
+    /// Least angle between two faces that shows as an edge, in degrees, 0 to 180 exclusive; default 30.
     pub crease_deg: f64,
     /// Further folders to search for models (each sub-folder a model), after the world's own folder and the `models/`
     /// folder in or beside it; default none.
     pub model_folders: Vec<PathBuf>,
-    /// Length of one unit of an imported OBJ file in metres; default 1.
+    /// Length of one unit of an imported OBJ file, in metres; default 1.
     pub obj_unit_m: f64,
     /// The axis that points up in an imported OBJ file; default z.
     pub obj_up_axis: UpAxis,
@@ -136,6 +139,8 @@ enum Format {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum MeshFormat {
     Collada,
+    Gltf,
+    Obj,
 }
 
 impl Format {
@@ -143,6 +148,8 @@ impl Format {
         match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
             "world" | "sdf" => Some(Self::Sdf),
             "dae" => Some(Self::Mesh(MeshFormat::Collada)),
+            "gltf" | "glb" => Some(Self::Mesh(MeshFormat::Gltf)),
+            "obj" => Some(Self::Mesh(MeshFormat::Obj)),
             _ => None,
         }
     }

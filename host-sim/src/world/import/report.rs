@@ -11,7 +11,7 @@ pub struct ImportReport {
     pub problems: Vec<ImportProblem>,
     /// Problems beyond the first [`ImportReport::MAX_PROBLEMS`], not listed.
     pub unlisted_problem_count: usize,
-    /// Least length of an edge that enters the world in metres.
+    /// Least length of an edge that enters the world, in metres.
     pub min_edge_m: f64,
     /// Segments shorter than `min_edge_m`, left out of the world.
     pub short_segment_count: usize,
@@ -79,7 +79,7 @@ pub struct ModelReport {
     pub segments_5cm: usize,
     /// Segments of 10 cm or more.
     pub segments_10cm: usize,
-    /// Total length of its segments in metres.
+    /// Total length of its segments, in metres.
     pub edge_length_m: f64,
     /// The box around it; none if nothing was read.
     pub bounding_box: Option<BoundingBox>,
@@ -88,9 +88,9 @@ pub struct ModelReport {
 /// A box along the axes of the world frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct BoundingBox {
-    /// Least x, y and z in metres.
+    /// Least x, y and z, in metres.
     pub min_m: [f32; 3],
-    /// Greatest x, y and z in metres.
+    /// Greatest x, y and z, in metres.
     pub max_m: [f32; 3],
 }
 
@@ -107,7 +107,7 @@ impl BoundingBox {
         Self { min_m: each(self.min_m, other.min_m, f32::min), max_m: each(self.max_m, other.max_m, f32::max) }
     }
 
-    /// Its extent along x, y and z in metres.
+    /// Its extent along x, y and z, in metres.
     #[must_use]
     pub fn size_m(&self) -> [f32; 3] {
         [0, 1, 2].map(|i| self.max_m[i] - self.min_m[i])

@@ -5,21 +5,23 @@
 //! colour of a visual's material. An include's pose replaces that of the model it includes; a nested model's pose is
 //! relative to its parent. Collision shapes, joints, sensors and plugins are not to be seen and not read.
 
+mod shape;
+
+use super::ImportProblem;
 use super::library::FoundFile;
 use super::placement::Placement;
-use super::session::{PlacedModel, Session};
+use super::session::{MAX_TRIANGLES, PlacedModel, Session};
 use super::xml::{Problems, child, children, numbers, parse, text};
-use super::{ImportProblem, primitives};
-use crate::world::mesh::TriangleMesh;
 use nalgebra::Vector3;
 use roxmltree::Node;
+use shape::{diffuse, pose_of, primitive};
 use std::path::Path;
 
 /// Deepest nesting of models and includes; beyond, a model probably includes itself.
 const MAX_DEPTH: usize = 16;
 
 /// Most models, nested ones included, in one world.
-const MAX_MODELS: usize = 100_000;
+const MAX_MODELS: usize = 20_000;
 
 /// Elements of a world or model that nothing to be seen hangs on.
 const WITHOUT_SURFACES: [&str; 40] = [
@@ -132,7 +134,8 @@ impl Reader<'_, '_> {
                 "see the other problems named",
             );
         }
-        self.session.place(model)
+        self.session.place(model);
+        Ok(())
     }
 
     /// Adds all visuals of a `<model>`; `pose` replaces the model's own.
@@ -291,8 +294,8 @@ impl Reader<'_, '_> {
         if let Some(reflectance) = diffuse(source, element) {
             model.mesh.triangles[first..].iter_mut().for_each(|triangle| triangle.reflectance = reflectance);
         }
-        if model.mesh.triangles.len() > self.session.triangles_left() {
-            let what = format!("more than {} triangles in the world", super::session::MAX_TRIANGLES);
+        if !self.session.has_room_for(model.mesh.element_count()) {
+            let what = format!("more than {MAX_TRIANGLES} triangles in the world");
             return Err(ImportProblem::new(source.problems.place(element), what, "simplify its meshes"));
         }
         Ok(())
@@ -316,7 +319,7 @@ impl Reader<'_, '_> {
             ),
         };
         match self.session.mesh(&file) {
-            Some(read) if model.mesh.triangles.len() + read.mesh.triangles.len() <= self.session.triangles_left() => {
+            Some(read) if self.session.has_room_for(model.mesh.element_count() + read.mesh.element_count()) => {
                 placed.after(&Placement::scale(scale)).append(&read.mesh, &mut model.mesh);
                 if !model.sources.contains(&file.shown) {
                     model.sources.push(file.shown);
@@ -345,74 +348,4 @@ fn name_unread(source: &mut Source<'_>, element: Node<'_, '_>, name: &str) {
 
 fn name_of<'a>(element: Node<'a, '_>) -> &'a str {
     element.attribute("name").unwrap_or("")
-}
-
-/// The `<pose>` of an element, none meaning no displacement.
-fn pose_of(source: &mut Source<'_>, element: Node<'_, '_>) -> Placement {
-    let Some(pose) = child(element, "pose") else { return Placement::identity() };
-    let relative = pose.attribute("relative_to").or_else(|| pose.attribute("frame")).unwrap_or("");
-    if !["", "world", "__model__"].contains(&relative) {
-        let what = format!("a pose relative to '{relative}' is read as relative to its parent");
-        source.problems.add(pose, what, "state the pose relative to the parent");
-    }
-    if text(pose).is_empty() {
-        return Placement::identity();
-    }
-    let placement = if pose.attribute("rotation_format") == Some("quat_xyzw") {
-        numbers(pose).map(|[x, y, z, qx, qy, qz, qw]| {
-            Placement::translation(Vector3::new(x, y, z)).after(&Placement::quaternion([qx, qy, qz, qw]))
-        })
-    } else {
-        let unit = if pose.attribute("degrees") == Some("true") { 1.0_f64.to_radians() } else { 1.0 };
-        numbers(pose).map(|[x, y, z, roll, pitch, yaw]| {
-            let turn = Placement::roll_pitch_yaw(roll * unit, pitch * unit, yaw * unit);
-            Placement::translation(Vector3::new(x, y, z)).after(&turn)
-        })
-    };
-    placement.unwrap_or_else(|| {
-        source.problems.add(pose, "the pose is not six finite numbers; no displacement is taken", "correct it");
-        Placement::identity()
-    })
-}
-
-/// A simple shape as a mesh; `None` if it shows nothing or can't be read.
-fn primitive(source: &mut Source<'_>, shape: Node<'_, '_>) -> Option<TriangleMesh> {
-    let length =
-        |name: &str| child(shape, name).and_then(numbers::<1>).map(|[value]| value).filter(|&value| value > 0.0);
-    let name = shape.tag_name().name();
-    let mesh = match name {
-        "empty" => return None,
-        "box" => child(shape, "size").and_then(numbers).map(|size| primitives::cuboid(Vector3::from(size))),
-        "sphere" => length("radius").map(primitives::sphere),
-        "cylinder" => {
-            length("radius").zip(length("length")).map(|(radius_m, length_m)| primitives::cylinder(radius_m, length_m))
-        }
-        "plane" => {
-            let normal = child(shape, "normal").and_then(numbers).unwrap_or([0.0, 0.0, 1.0]);
-            let size = child(shape, "size").and_then(numbers).unwrap_or([1.0, 1.0]);
-            Some(primitives::plane(Vector3::from(normal), size))
-        }
-        _ => {
-            source.problems.add(shape, format!("the shape <{name}> is not read"), "replace it by a mesh");
-            return None;
-        }
-    };
-    if mesh.is_none() {
-        source.problems.add(shape, format!("the <{name}> lacks its measures"), "give them as positive numbers");
-    }
-    mesh
-}
-
-/// How much light the visual's own material returns, if it states a colour.
-fn diffuse(source: &mut Source<'_>, visual: Node<'_, '_>) -> Option<f32> {
-    let diffuse = child(child(visual, "material")?, "diffuse")?;
-    let words = text(diffuse).split_ascii_whitespace().map(str::parse::<f64>);
-    let color: Option<Vec<f64>> = words.map(|word| word.ok().filter(|value| value.is_finite())).collect();
-    match color.as_deref() {
-        Some([red, green, blue, ..]) => Some(super::luminance([*red, *green, *blue])),
-        _ => {
-            source.problems.add(diffuse, "the diffuse colour is not three numbers; mid grey is taken", "correct it");
-            None
-        }
-    }
 }

@@ -5,13 +5,20 @@ use super::super::mesh::TriangleMesh;
 use super::assemble::Assembly;
 use super::library::{FoundFile, Library};
 use super::placement::Placement;
-use super::{Format, ImportError, ImportOptions, ImportProblem, ImportReport, MeshFormat, collada};
+use super::{Format, ImportError, ImportOptions, ImportProblem, ImportReport, MeshFormat, collada, gltf, obj};
+use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-/// Most triangles in one import, and in one mesh file: 20 million, a gigabyte of world file.
-pub(super) const MAX_TRIANGLES: usize = 20_000_000;
+/// Most triangles and lines in one import, and in one mesh file: thirty times those of a furnished flat.
+pub(super) const MAX_TRIANGLES: usize = 5_000_000;
+
+/// Deepest nesting of a mesh file's nodes; beyond, a node probably holds itself.
+pub(super) const MAX_NODE_DEPTH: usize = 64;
+
+/// Most nodes placed from one mesh file, each as often as it is instanced.
+pub(super) const MAX_PLACED_NODES: usize = 1_000_000;
 
 /// A mesh file as read: metres, z up.
 #[derive(Debug, Default)]
@@ -75,19 +82,23 @@ impl<'a> Session<'a> {
             return Err(ImportProblem::new(&file.shown, what, "convert it to .dae, .obj, .gltf or .glb"));
         };
         let bytes = self.library.read(file)?;
-        match format {
+        let mut read = match format {
             MeshFormat::Collada => collada::read(&bytes, &file.shown),
-        }
+            MeshFormat::Gltf => gltf::read(&bytes, file, &mut self.library),
+            MeshFormat::Obj => obj::read(&bytes, file, &mut self.library),
+        }?;
+        read.mesh = read.mesh.without_unused_vertices();
+        Ok(read)
     }
 
     /// Adds a finished model to the world.
-    pub(super) fn place(&mut self, model: PlacedModel) -> Result<(), ImportProblem> {
-        self.assembly.add(model, self.options, &mut self.report)
+    pub(super) fn place(&mut self, model: PlacedModel) {
+        self.assembly.add(model, self.options, &mut self.report);
     }
 
-    /// How many triangles may still be placed.
-    pub(super) fn triangles_left(&self) -> usize {
-        MAX_TRIANGLES - self.assembly.triangle_count()
+    /// Whether `added` more triangles and lines are within the limit.
+    pub(super) fn has_room_for(&self, added: usize) -> bool {
+        self.assembly.element_count() + added <= MAX_TRIANGLES
     }
 
     /// The world and the report, unless nothing was found.
@@ -121,6 +132,15 @@ pub(super) fn read_single_mesh(session: &mut Session<'_>) -> Result<(), ImportPr
     session.report.textured_material_count += read.textured_material_count;
     let name = file.path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     let mut mesh = TriangleMesh::default();
-    Placement::identity().append(&read.mesh, &mut mesh);
-    session.place(PlacedModel { name, sources: vec![file.shown], mesh })
+    let options = session.options;
+    let placement = match Format::of(&file.path) {
+        Some(Format::Mesh(MeshFormat::Obj)) => {
+            let unit = Placement::scale(Vector3::repeat(options.obj_unit_m));
+            options.obj_up_axis.world_from_file().after(&unit)
+        }
+        _ => Placement::identity(),
+    };
+    placement.append(&read.mesh, &mut mesh);
+    session.place(PlacedModel { name, sources: vec![file.shown], mesh });
+    Ok(())
 }

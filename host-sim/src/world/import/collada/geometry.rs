@@ -3,10 +3,14 @@
 use super::ById;
 use crate::world::import::polygon::triangulate;
 use crate::world::import::session::MAX_TRIANGLES;
+use crate::world::import::topology::Topology;
 use crate::world::import::xml::{Problems, child, children, text};
 use nalgebra::Vector3;
 use roxmltree::Node;
 use std::collections::HashMap;
+
+/// Most materials of one geometry; they are looked through for every primitive and every instance.
+const MAX_SYMBOLS: usize = 1000;
 
 /// A geometry in the file's own unit and axes.
 #[derive(Debug, Default)]
@@ -20,7 +24,12 @@ pub(super) struct Geometry {
 }
 
 /// Reads a `<geometry>`; `None` if it is of a kind that is not read, which is then named.
-pub(super) fn read<'a>(element: Node<'a, 'a>, by_id: &ById<'a>, problems: &mut Problems<'_>) -> Option<Geometry> {
+pub(super) fn read<'a>(
+    element: Node<'a, 'a>,
+    by_id: &ById<'a>,
+    sources: &mut Sources,
+    problems: &mut Problems<'_>,
+) -> Option<Geometry> {
     let Some(mesh) = child(element, "mesh") else {
         problems.add(
             element,
@@ -29,7 +38,7 @@ pub(super) fn read<'a>(element: Node<'a, 'a>, by_id: &ById<'a>, problems: &mut P
         );
         return None;
     };
-    let mut reader = Reader { by_id, positions: HashMap::new(), geometry: Geometry::default(), bad_count: 0 };
+    let mut reader = Reader { by_id, sources, positions: HashMap::new(), geometry: Geometry::default(), bad_count: 0 };
     for part in children(mesh) {
         let name = part.tag_name().name();
         match name {
@@ -41,8 +50,12 @@ pub(super) fn read<'a>(element: Node<'a, 'a>, by_id: &ById<'a>, problems: &mut P
                         "export it again",
                     );
                 }
-                if reader.geometry.triangles.len() > MAX_TRIANGLES {
-                    problems.add(part, format!("cut at {MAX_TRIANGLES} triangles"), "simplify the mesh");
+                let geometry = &reader.geometry;
+                if geometry.triangles.len() + geometry.lines.len() > MAX_TRIANGLES
+                    || geometry.symbols.len() > MAX_SYMBOLS
+                {
+                    let what = format!("cut at {MAX_TRIANGLES} triangles and lines, or {MAX_SYMBOLS} materials");
+                    problems.add(part, what, "simplify the mesh");
                     break;
                 }
                 if child(part, "ph").is_some() {
@@ -63,6 +76,7 @@ pub(super) fn read<'a>(element: Node<'a, 'a>, by_id: &ById<'a>, problems: &mut P
 
 struct Reader<'r, 'a> {
     by_id: &'r ById<'a>,
+    sources: &'r mut Sources,
     /// First index and count of the vertices read from a source, by its id.
     positions: HashMap<String, (u32, u32)>,
     geometry: Geometry,
@@ -101,9 +115,16 @@ impl<'a> Reader<'_, 'a> {
                 }
             }
             _ => {
+                let topology = match kind {
+                    "tristrips" => Topology::TriangleStrip,
+                    "trifans" => Topology::TriangleFan,
+                    "lines" => Topology::Lines,
+                    "linestrips" => Topology::LineStrip,
+                    _ => Topology::Triangles,
+                };
                 for list in lists() {
                     let corners = indices(text(list), &indexing);
-                    self.list(kind, &corners, symbol);
+                    self.list(topology, &corners, symbol);
                 }
             }
         }
@@ -136,28 +157,11 @@ impl<'a> Reader<'_, 'a> {
         self.geometry.triangles.extend(triangles);
     }
 
-    /// Triangles, strips, fans, lines and line strips: all regular walks over the corners.
-    fn list(&mut self, kind: &str, corners: &[Option<u32>], symbol: usize) {
-        match kind {
-            "triangles" => {
-                let faces = corners.chunks_exact(3);
-                self.bad_count += usize::from(!faces.remainder().is_empty());
-                faces.for_each(|face| self.triangle([face[0], face[1], face[2]], symbol));
-            }
-            "tristrips" => {
-                for (index, face) in corners.windows(3).enumerate() {
-                    let [a, b] = if index % 2 == 0 { [face[0], face[1]] } else { [face[1], face[0]] };
-                    self.triangle([a, b, face[2]], symbol);
-                }
-            }
-            "trifans" => {
-                if let Some((&center, rim)) = corners.split_first() {
-                    rim.windows(2).for_each(|pair| self.triangle([center, pair[0], pair[1]], symbol));
-                }
-            }
-            "linestrips" => corners.windows(2).for_each(|pair| self.line(pair)),
-            _ => corners.chunks_exact(2).for_each(|pair| self.line(pair)),
-        }
+    /// Triangles or lines by the topology of the list.
+    fn list(&mut self, topology: Topology, corners: &[Option<u32>], symbol: usize) {
+        self.bad_count += usize::from(topology.left_over(corners.len()) > 0);
+        topology.triangles(corners).into_iter().for_each(|face| self.triangle(face, symbol));
+        topology.lines(corners).into_iter().for_each(|ends| self.line(ends));
     }
 
     fn triangle(&mut self, corners: [Option<u32>; 3], symbol: usize) {
@@ -167,8 +171,8 @@ impl<'a> Reader<'_, 'a> {
         }
     }
 
-    fn line(&mut self, ends: &[Option<u32>]) {
-        match *ends {
+    fn line(&mut self, ends: [Option<u32>; 2]) {
+        match ends {
             [Some(a), Some(b)] => self.geometry.lines.push([a, b]),
             _ => self.bad_count += 1,
         }
@@ -197,33 +201,59 @@ impl<'a> Reader<'_, 'a> {
         Some(Indexing { stride, offset: offset(input)?, first, count })
     }
 
-    /// The vertices of a `<source>`, read once; the first index and the count.
+    /// Adds the points of a `<source>`, once; the first index and the count.
     fn source(&mut self, source: Node<'a, 'a>) -> Option<(u32, u32)> {
         let id = source.attribute("id").unwrap_or("");
         if let Some(&known) = self.positions.get(id) {
             return Some(known);
         }
-        let accessor = child(child(source, "technique_common")?, "accessor")?;
-        let array =
-            child(source, "float_array").or_else(|| self.by_id.get("float_array", accessor.attribute("source")?))?;
-        let attribute = |name: &str, default: usize| match accessor.attribute(name) {
-            Some(value) => value.trim().parse::<usize>().ok(),
-            None => Some(default),
-        };
-        let (stride, offset) = (attribute("stride", 1)?, attribute("offset", 0)?);
-        if stride < 3 {
-            return None;
-        }
-        // What is not a number becomes NaN here and is named when the model is put together.
-        let values: Vec<f64> =
-            text(array).split_ascii_whitespace().skip(offset).map(|word| word.parse().unwrap_or(f64::NAN)).collect();
-        let points = values.chunks(stride).filter_map(|point| point.first_chunk::<3>());
-        let first = self.geometry.vertices.len();
-        self.geometry.vertices.extend(points.take(attribute("count", usize::MAX)?).map(|&point| Vector3::from(point)));
-        let range = (u32::try_from(first).ok()?, u32::try_from(self.geometry.vertices.len() - first).ok()?);
+        let points = self.sources.points(source)?;
+        let first = u32::try_from(self.geometry.vertices.len()).ok()?;
+        self.geometry.vertices.extend(points);
+        let range = (first, u32::try_from(points.len()).ok()?);
         self.positions.insert(id.to_owned(), range);
         Some(range)
     }
+}
+
+/// The points of sources by id, each read once however many geometries share it.
+#[derive(Debug, Default)]
+pub(super) struct Sources(HashMap<String, Option<Vec<Vector3<f64>>>>);
+
+impl Sources {
+    /// The points of a `<source>`; `None` if it has no array of floats or no triples.
+    fn points(&mut self, source: Node<'_, '_>) -> Option<&[Vector3<f64>]> {
+        let id = source.attribute("id").unwrap_or("");
+        if !self.0.contains_key(id) {
+            self.0.insert(id.to_owned(), read_points(source));
+        }
+        self.0.get(id)?.as_deref()
+    }
+}
+
+fn read_points(source: Node<'_, '_>) -> Option<Vec<Vector3<f64>>> {
+    let accessor = child(child(source, "technique_common")?, "accessor")?;
+    let attribute = |name: &str, default: usize| match accessor.attribute(name) {
+        Some(value) => value.trim().parse::<usize>().ok(),
+        None => Some(default),
+    };
+    let (stride, offset) = (attribute("stride", 1)?, attribute("offset", 0)?);
+    if stride < 3 {
+        return None;
+    }
+    // What is not a number becomes NaN here and is named when the model is put together.
+    let number = |word: &str| word.parse().unwrap_or(f64::NAN);
+    let length = attribute("count", usize::MAX)?.saturating_mul(stride);
+    let array = text(child(source, "float_array")?);
+    let mut numbers = array.split_ascii_whitespace().skip(offset).take(length).map(number);
+    let mut points = Vec::new();
+    while let (Some(x), Some(y), Some(z)) = (numbers.next(), numbers.next(), numbers.next()) {
+        points.push(Vector3::new(x, y, z));
+        if stride > 3 {
+            numbers.nth(stride - 4);
+        }
+    }
+    Some(points)
 }
 
 /// The vertices that a `<p>` names, one per corner; `None` where an index is bad.

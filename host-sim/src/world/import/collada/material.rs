@@ -5,7 +5,7 @@ use crate::world::import::luminance;
 use crate::world::import::xml::{child, children, text};
 use crate::world::mesh::MID_GREY;
 use roxmltree::Node;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// How much light a material returns.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,6 +27,16 @@ impl Reflectance {
     }
 }
 
+/// Which material an `<instance_geometry>` binds to each symbol of its primitives.
+pub(super) fn bindings<'a>(instance: Node<'a, 'a>) -> HashMap<&'a str, &'a str> {
+    child(instance, "bind_material")
+        .and_then(|bind| child(bind, "technique_common"))
+        .into_iter()
+        .flat_map(children)
+        .filter_map(|material| material.attribute("symbol").zip(material.attribute("target")))
+        .collect()
+}
+
 /// Materials by the id of their element, looked up once.
 pub(super) struct Materials<'d, 'a> {
     by_id: &'d ById<'a>,
@@ -38,15 +48,9 @@ impl<'d, 'a> Materials<'d, 'a> {
         Self { by_id, known: BTreeMap::new() }
     }
 
-    /// The material that an `<instance_geometry>` binds to a symbol of its primitives.
-    pub(super) fn of_symbol(&mut self, instance: Node<'a, 'a>, symbol: &str) -> Reflectance {
-        let bound = child(instance, "bind_material")
-            .and_then(|bind| child(bind, "technique_common"))
-            .into_iter()
-            .flat_map(children)
-            .find(|material| material.attribute("symbol") == Some(symbol))
-            .and_then(|material| material.attribute("target"));
-        let id = bound.map_or(symbol, |target| target.trim_start_matches('#'));
+    /// The material that `bindings` give a symbol; without one, the material of that id.
+    pub(super) fn bound(&mut self, bindings: &HashMap<&str, &str>, symbol: &str) -> Reflectance {
+        let id = bindings.get(symbol).map_or(symbol, |target| target.trim_start_matches('#'));
         if let Some(&known) = self.known.get(id) {
             return known;
         }

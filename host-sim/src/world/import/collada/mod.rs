@@ -9,21 +9,18 @@ mod material;
 
 use super::ImportProblem;
 use super::placement::{Placement, UpAxis};
-use super::session::{MAX_TRIANGLES, MeshFile};
+use super::session::{MAX_NODE_DEPTH, MAX_PLACED_NODES, MAX_TRIANGLES, MeshFile};
 use super::xml::{Problems, child, children, numbers, parse, text};
 use crate::world::mesh::{Triangle, TriangleMesh};
-use geometry::Geometry;
+use geometry::{Geometry, Sources};
 use material::{Materials, Reflectance};
 use nalgebra::Vector3;
 use roxmltree::Node;
 use std::collections::HashMap;
 use std::rc::Rc;
 
-/// Deepest nesting of nodes; beyond, a node probably instances itself.
-const MAX_DEPTH: usize = 64;
-
-/// Most nodes placed, each as often as it is instanced.
-const MAX_NODES: usize = 1_000_000;
+/// Most vertices read, each as often as it is instanced.
+const MAX_VERTICES: usize = 3 * MAX_TRIANGLES;
 
 /// Reads a Collada file into metres, z up.
 pub(super) fn read(bytes: &[u8], shown: &str) -> Result<MeshFile, ImportProblem> {
@@ -38,9 +35,11 @@ pub(super) fn read(bytes: &[u8], shown: &str) -> Result<MeshFile, ImportProblem>
         materials: Materials::new(&by_id),
         by_id: &by_id,
         problems: Problems::of(shown),
+        sources: Sources::default(),
         geometries: HashMap::new(),
         mesh: TriangleMesh::default(),
-        node_count: 0,
+        part_count: 0,
+        vertex_count: 0,
         overflow: None,
     };
     let placement = reader.asset(root);
@@ -82,9 +81,13 @@ struct Reader<'d, 'a> {
     by_id: &'d ById<'a>,
     materials: Materials<'d, 'a>,
     problems: Problems<'d>,
+    sources: Sources,
     geometries: HashMap<String, Option<Rc<Geometry>>>,
     mesh: TriangleMesh,
-    node_count: usize,
+    /// Parts of nodes placed so far, each as often as it is instanced.
+    part_count: usize,
+    /// Vertices read so far, each as often as it is instanced.
+    vertex_count: usize,
     /// Set once a limit is passed; from then on nothing more is placed.
     overflow: Option<String>,
 }
@@ -137,12 +140,14 @@ impl<'a> Reader<'_, 'a> {
 
     /// Places what a node, or a scene, holds.
     fn node(&mut self, node: Node<'a, 'a>, parent: &Placement, depth: usize) {
-        self.node_count += 1;
-        if depth > MAX_DEPTH || self.node_count > MAX_NODES {
-            self.overflow = Some(format!("nodes nest deeper than {MAX_DEPTH} or number more than {MAX_NODES}"));
-        }
         let mut placed = *parent;
         for part in children(node) {
+            self.part_count += 1;
+            if depth > MAX_NODE_DEPTH || self.part_count > MAX_PLACED_NODES {
+                let what =
+                    format!("nodes nest deeper than {MAX_NODE_DEPTH} or hold more than {MAX_PLACED_NODES} parts");
+                self.overflow.get_or_insert(what);
+            }
             if self.overflow.is_some() {
                 return;
             }
@@ -191,20 +196,22 @@ impl<'a> Reader<'_, 'a> {
         };
         let id = element.attribute("id").unwrap_or_default();
         if !self.geometries.contains_key(id) {
-            let read = geometry::read(element, self.by_id, &mut self.problems).map(Rc::new);
+            let read = geometry::read(element, self.by_id, &mut self.sources, &mut self.problems).map(Rc::new);
+            self.vertex_count += read.as_ref().map_or(0, |geometry| geometry.vertices.len());
             self.geometries.insert(id.to_owned(), read);
         }
         let Some(geometry) = self.geometries.get(id).cloned().flatten() else { return };
-        if self.mesh.triangles.len() + geometry.triangles.len() > MAX_TRIANGLES
-            || self.mesh.vertices.len() + geometry.vertices.len() > 3 * MAX_TRIANGLES
-        {
-            self.overflow = Some(format!("more than {MAX_TRIANGLES} triangles"));
+        self.vertex_count += geometry.vertices.len();
+        let element_count = geometry.triangles.len() + geometry.lines.len();
+        if self.mesh.element_count() + element_count > MAX_TRIANGLES || self.vertex_count > MAX_VERTICES {
+            self.overflow = Some(format!("more than {MAX_TRIANGLES} triangles and lines or {MAX_VERTICES} vertices"));
             return;
         }
+        let bound = material::bindings(instance);
         let reflectances: Vec<f32> = geometry
             .symbols
             .iter()
-            .map(|symbol| self.materials.of_symbol(instance, symbol))
+            .map(|symbol| self.materials.bound(&bound, symbol))
             .map(Reflectance::value)
             .collect();
         let local = TriangleMesh {
