@@ -230,6 +230,7 @@ fn gltf_buffers_out_of_range_are_named() {
         ("\"byteLength\": 72", "\"byteLength\": 71", "reach beyond"),
         ("\"byteOffset\": 72", "\"byteOffset\": 18446744073709551615", "reach beyond"),
         ("\"count\": 12", "\"count\": 1152921504606846976", "more than"),
+        ("\"POSITION\": 0", "\"POSITION\": 2", "an accessor that is not there"),
         ("\"count\": 6", "\"count\": 5", "an index is beyond its 5 vertices"),
         ("\"byteLength\": 96", "\"byteLength\": 97", "it states 97 bytes and has 96"),
         ("base64,", "base64,!", "data URI is not base64"),

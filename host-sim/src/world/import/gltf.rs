@@ -11,12 +11,14 @@ use super::topology::Topology;
 use super::{ImportProblem, ImportReport};
 use crate::world::mesh::{Triangle, TriangleMesh};
 use ::gltf::buffer::Source;
+use ::gltf::json::validation::Checked;
 use ::gltf::mesh::Mode;
 use ::gltf::scene::Transform;
 use ::gltf::{Document, Gltf, Material, Node, Primitive, Semantic};
 use base64::Engine;
 use nalgebra::Vector3;
 use std::collections::BTreeSet;
+use std::fmt::Display;
 
 /// Most vertices and indices read, each as often as it is instanced.
 const MAX_ELEMENTS: usize = 4 * MAX_TRIANGLES;
@@ -24,15 +26,19 @@ const MAX_ELEMENTS: usize = 4 * MAX_TRIANGLES;
 /// Reads a glTF file into metres, z up.
 pub(super) fn read(bytes: &[u8], file: &FoundFile, library: &mut Library) -> Result<MeshFile, ImportProblem> {
     let fail = |what: String| ImportProblem::new(&file.shown, what, "export the file again; it may be cut short");
+    let unreadable = |why: &dyn Display| fail(format!("is not readable glTF: {why}"));
     // The crate subtracts the header's length from the stated one unchecked.
     let is_binary = bytes.starts_with(b"glTF");
-    if is_binary
-        && bytes.get(8..12).is_none_or(|length| u32::from_le_bytes([length[0], length[1], length[2], length[3]]) < 20)
-    {
-        return Err(fail("is not readable glTF: the header is cut short".to_owned()));
+    let stated = bytes.get(8..12).map(|length| u32::from_le_bytes([length[0], length[1], length[2], length[3]]));
+    if is_binary && stated.is_none_or(|length| length < 12) {
+        return Err(unreadable(&"its header is cut short"));
     }
-    let Gltf { document, blob } =
-        Gltf::from_slice(bytes).map_err(|error| fail(format!("is not readable glTF: {error}")))?;
+    let Gltf { document, blob } = Gltf::from_slice_without_validation(bytes).map_err(|error| unreadable(&error))?;
+    let root = document.into_json();
+    if names_unknown_positions(&root) {
+        return Err(unreadable(&"the positions of a mesh are an accessor that is not there"));
+    }
+    let document = Document::from_json(root).map_err(|error| unreadable(&error))?;
     let mut reader = Reader {
         file,
         library,
@@ -208,6 +214,14 @@ impl Reader<'_> {
             None => crate::world::mesh::MID_GREY,
         }
     }
+}
+
+/// Whether a mesh names positions that are not there, on which the crate's own check (1.4.1) panics.
+fn names_unknown_positions(root: &::gltf::json::Root) -> bool {
+    let position = Checked::Valid(Semantic::Positions);
+    let mut primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    let index = |primitive: &::gltf::json::mesh::Primitive| Some(primitive.attributes.get(&position)?.value());
+    primitives.any(|primitive| index(primitive).is_some_and(|index| index >= root.accessors.len()))
 }
 
 fn placement(transform: &Transform) -> Placement {

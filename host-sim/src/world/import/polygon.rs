@@ -2,8 +2,9 @@
 
 use nalgebra::Vector3;
 
-/// Polygons with more corners are cut as a fan: ear cutting takes the cube of the count at worst.
-const MAX_CORNERS: usize = 256;
+/// Points looked at per corner, on average, before cutting goes on blindly: the search for ears takes the cube of the
+/// corner count at worst, its square as a rule.
+const BUDGET_PER_CORNER: usize = 2000;
 
 /// Triangles of the polygon with the given corners, as indices into `corners`, wound like the polygon.
 ///
@@ -16,9 +17,12 @@ pub(super) fn triangulate(corners: &[Vector3<f64>]) -> Vec<[usize; 3]> {
     let normal = area_normal(corners);
     let mut left: Vec<usize> = (0..count).collect();
     let mut triangles = Vec::with_capacity(count - 2);
+    let mut budget = BUDGET_PER_CORNER * count;
     while left.len() > 3 {
-        let ear =
-            if count > MAX_CORNERS { Some(1) } else { (0..left.len()).find(|&at| is_ear(corners, &left, at, &normal)) };
+        let ear = (0..left.len()).find(|&at| {
+            budget = budget.saturating_sub(left.len());
+            budget == 0 || is_ear(corners, &left, at, &normal)
+        });
         // Without an ear the polygon crosses itself: cut anywhere.
         let at = ear.unwrap_or(1);
         triangles.push(around(&left, at));
@@ -75,6 +79,19 @@ mod tests {
         assert_eq!(areas.len(), 4);
         assert!(areas.iter().all(|&area| area > 0.0), "{areas:?}");
         assert!((areas.iter().sum::<f64>() - 6.5).abs() < 1e-12, "{areas:?}");
+    }
+
+    #[test]
+    fn a_comb_of_a_thousand_corners_is_covered_once() {
+        let teeth = (0..500).flat_map(|tooth| [(f64::from(tooth), 1.0), (f64::from(tooth) + 0.5, 0.0)]);
+        let mut outline: Vec<(f64, f64)> = teeth.collect();
+        outline.push((500.0, 2.0));
+        outline.push((0.0, 2.0));
+        outline.reverse();
+        let outline = flat(&outline);
+        let signs: Vec<f64> = areas(&outline).iter().map(|area| area.signum()).collect();
+        assert_eq!(signs.len(), 1000);
+        assert!(signs.iter().all(|sign| sign * signs[0] > 0.0));
     }
 
     #[test]
