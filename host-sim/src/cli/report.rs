@@ -2,10 +2,11 @@
 
 use super::console::{self, Format};
 use super::run::RunPrinted;
+use super::scenario_args::find_row;
 use super::trials::name;
 use super::{summary_table, worlds};
 use clap::Args;
-use edgeloc_sim::report::{RunFolder, RunResults, WorldFacts, page};
+use edgeloc_sim::report::{FloorPlan, RunFolder, RunResults, WorldFacts, page, to_svg_file, trials_plan};
 use edgeloc_sim::scenario::Scenario;
 use edgeloc_sim::world::{FreeSpace, FreeSpaceOptions, WireframeWorld};
 use miette::{Result, miette};
@@ -14,11 +15,18 @@ use std::path::PathBuf;
 /// Print the figures of a finished run and write its report.html anew.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  edgeloc report runs/latest\n  edgeloc report runs/2026-01-31-paper-office --format json"
+    after_help = "Examples:\n  edgeloc report runs/latest\n  edgeloc report runs/2026-01-31-paper-office --format json\n  \
+                  edgeloc report runs/latest --plan plan.svg --row 'near, polarity'"
 )]
 pub(super) struct Report {
     /// Folder of the run.
     run: PathBuf,
+    /// Also write the plan of one row's trials, as a drawing of its own.
+    #[arg(long, value_name = "FILE")]
+    plan: Option<PathBuf>,
+    /// Row of the plan [default: the first].
+    #[arg(long, requires = "plan")]
+    row: Option<String>,
     /// How to print.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -38,6 +46,12 @@ impl Report {
         let free = free.as_ref().map(worlds::free_cells);
         let report = page(&results, world.as_ref(), free.as_ref(), &name(folder.path()));
         let report = folder.write("report.html", report.as_bytes())?;
+        if let Some(path) = &self.plan {
+            let row = find_row(&results.scenario, self.row.as_deref())?;
+            let plan = FloorPlan::new(world.as_ref(), free.as_ref(), &results.nodes);
+            let records = results.records.iter().filter(|record| record.row == row.name);
+            console::write_file(path, to_svg_file(trials_plan(&plan, records)).as_bytes())?;
+        }
         if self.format == Format::Json {
             return console::print_json(&RunPrinted { folder: folder.path(), summary: &results.summary });
         }

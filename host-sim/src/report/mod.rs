@@ -26,4 +26,4 @@ pub use page::{page, replay_command};
 pub use run_folder::{RunFolder, RunFolderError, RunResults};
 pub use summary::{MapFacts, PAPER_INTERVAL, PAPER_RATE, RowSummary, Summary, answer_distance_m, worst_trials};
 pub use timings::{RowTimings, RunTimings};
-pub use trials_plan::trial_marks;
+pub use trials_plan::{trial_marks, trials_plan};

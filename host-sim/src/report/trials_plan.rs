@@ -6,7 +6,13 @@ use super::summary::answer_distance_m;
 use crate::monte_carlo::{Outcome, TrialRecord};
 use edgeloc::geometry::Point2;
 use svg::Node;
-use svg::node::element::{Circle, Group};
+use svg::node::element::{Circle, Group, SVG};
+
+/// The floor plan with the trials of `records`, a drawing of its own.
+#[must_use]
+pub fn trials_plan<'r>(plan: &FloorPlan, records: impl Iterator<Item = &'r TrialRecord>) -> SVG {
+    plan.canvas().add(plan.background()).add(plan.node_marks()).add(trial_marks(plan, records)).add(plan.scale_bar())
+}
 
 /// Marks of `records`, to be drawn over the plan's background.
 #[must_use]
