@@ -2,9 +2,7 @@
 //!
 //! World frame: metres, z up, the floor a robot drives on at z = 0.
 
-mod coverage;
 mod crease;
-mod distance;
 pub mod file;
 mod free_space;
 pub mod import;

@@ -35,7 +35,7 @@ pub const HEIGHT_M: f32 = 2.5;
 pub struct OfficeOptions {
     /// Decides the layout, the furniture of each room and the clutter. Same seed, same world, bit for bit.
     pub seed: u64,
-    /// Clutter is added until the world holds this many edges; an office holds about 5,500 before and 8,000 with
+    /// Clutter is added until the world holds this many edges; an office holds about 5,300 before and 9,200 with
     /// every shelf full, and is left as it is outside of that range.
     pub edge_count: usize,
 }

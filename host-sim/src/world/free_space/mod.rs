@@ -9,20 +9,18 @@
 //! Of the regions either rule gives, connected over the sides of their cells, the largest one is the free space. Floors
 //! and ceilings are surfaces less than 45 degrees from level, a floor within 10 cm of z = 0.
 
-use super::coverage::{Coverage, Grid, Slab};
-use super::distance::squared_distances;
+mod coverage;
+mod distance;
+mod indoor;
+
 use super::{Surfaces, WireframeWorld};
 use crate::random::Stream;
-use edgeloc::geometry::{Point2, Point3};
+use coverage::Grid;
+use edgeloc::geometry::Point2;
+use indoor::{IndoorRule, OUTSIDE_BALL_M, indoor_regions, triangles};
 
 /// The most cells a grid may have, about 100 m by 100 m at 5 cm: bounds the memory that a world file can ask for.
 const MAX_CELL_COUNT: f64 = 4e6;
-
-/// How far from z = 0 a floor may lie \[m\].
-const FLOOR_TOLERANCE_M: f64 = 0.1;
-
-/// Radius of the ball that finds the outside of the world \[m\]: it does not pass openings twice as wide.
-const OUTSIDE_BALL_M: f64 = 1.25;
 
 /// In place of a number, for a cell that is not free.
 const NOT_FREE: u32 = u32::MAX;
@@ -58,13 +56,6 @@ pub struct FreeSpace {
     other_regions: Regions,
 }
 
-/// Which rule found the region.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum IndoorRule {
-    WalledIn,
-    FloorAndCeiling,
-}
-
 /// How many regions, and how many cells they have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 struct Regions {
@@ -81,8 +72,7 @@ impl FreeSpace {
     pub fn of(world: &WireframeWorld, options: &FreeSpaceOptions) -> Result<Self, FreeSpaceError> {
         check(options)?;
         let grid = grid_over(&world.surfaces, options)?;
-        let is_touched = touched_cells(&world.surfaces, &grid, options);
-        let (rule, mut regions) = indoor_regions(&world.surfaces, &grid, options, &is_touched);
+        let (rule, mut regions) = indoor_regions(&world.surfaces, &grid, options);
         if regions.is_empty() {
             return Err(FreeSpaceError::NoRoom { world: world.name.clone(), robot_radius_m: options.robot_radius_m });
         }
@@ -243,114 +233,6 @@ fn grid_over(surfaces: &Surfaces, options: &FreeSpaceOptions) -> Result<Grid, Fr
         return Err(FreeSpaceError::TooLarge { width_m, depth_m, cell_m, max_cell_count: MAX_CELL_COUNT as usize });
     }
     Ok(Grid { west: low[0] - border, south: low[1] - border, cell_m, width: width as usize, height: height as usize })
-}
-
-/// The triangles of which all is finite, as coordinates.
-fn triangles(surfaces: &Surfaces) -> impl Iterator<Item = [[f64; 3]; 3]> + '_ {
-    let corner = |index: u32| {
-        let Point3 { x, y, z } = surfaces.vertices.get(index as usize).copied()?;
-        [x, y, z].iter().all(|c| c.is_finite()).then(|| [x, y, z].map(f64::from))
-    };
-    surfaces.triangles.iter().filter_map(move |&[a, b, c]| Some([corner(a)?, corner(b)?, corner(c)?]))
-}
-
-/// Cells that a surface in the robot's height touches.
-fn touched_cells(surfaces: &Surfaces, grid: &Grid, options: &FreeSpaceOptions) -> Vec<bool> {
-    let slab = Slab { low: f64::from(options.slice_m.0), high: f64::from(options.slice_m.1) };
-    let mut touched = Coverage::new(grid);
-    for triangle in triangles(surfaces) {
-        touched.add(&triangle, slab);
-    }
-    touched.cells()
-}
-
-/// Cells whose center keeps at least the robot's radius from all points of touched cells.
-fn clear_cells(grid: &Grid, is_touched: &[bool], options: &FreeSpaceOptions) -> Vec<bool> {
-    let reach = f64::from(options.robot_radius_m) / grid.cell_m + core::f64::consts::FRAC_1_SQRT_2;
-    squared_distances(grid, is_touched).into_iter().map(|squared| squared as f64 >= reach * reach).collect()
-}
-
-/// Cells that the ball does not touch as it rolls round the outside, coming from the border of the grid.
-fn walled_in_cells(grid: &Grid, is_touched: &[bool]) -> Vec<bool> {
-    let reach = OUTSIDE_BALL_M / grid.cell_m;
-    let is_beyond = |squared: i64| squared as f64 >= reach * reach;
-    let ball_fits: Vec<bool> = squared_distances(grid, is_touched).into_iter().map(is_beyond).collect();
-    let mut ball_passes = vec![false; grid.cell_count()];
-    for region in regions(grid, &ball_fits) {
-        if region.iter().any(|&cell| grid.is_on_border(cell)) {
-            for cell in region {
-                ball_passes[cell] = true;
-            }
-        }
-    }
-    squared_distances(grid, &ball_passes).into_iter().map(is_beyond).collect()
-}
-
-/// The indoor regions by the rule that gives the larger one.
-fn indoor_regions(
-    surfaces: &Surfaces,
-    grid: &Grid,
-    options: &FreeSpaceOptions,
-    is_touched: &[bool],
-) -> (IndoorRule, Vec<Vec<usize>>) {
-    let level_in = |low: f64, high: f64| {
-        let mut coverage = Coverage::new(grid);
-        for triangle in triangles(surfaces).filter(is_level) {
-            coverage.add(&triangle, Slab { low, high });
-        }
-        coverage.cells()
-    };
-    let has_floor = level_in(-FLOOR_TOLERANCE_M, FLOOR_TOLERANCE_M.min(f64::from(options.slice_m.1)));
-    let has_ceiling = level_in(f64::from(options.slice_m.1), f64::INFINITY);
-    let is_clear = clear_cells(grid, is_touched, options);
-    let walled_in = both(&is_clear, &walled_in_cells(grid, is_touched));
-    let walled_in_count = walled_in.iter().filter(|&&is_in| is_in).count();
-    let with_floor = both(&walled_in, &has_floor);
-    let models_floor = 2 * with_floor.iter().filter(|&&is_in| is_in).count() > walled_in_count;
-    let walled_in = regions(grid, if models_floor { &with_floor } else { &walled_in });
-    let covered = regions(grid, &both(&is_clear, &both(&has_floor, &has_ceiling)));
-    let largest = |regions: &[Vec<usize>]| regions.iter().map(Vec::len).max().unwrap_or(0);
-    if largest(&covered) > largest(&walled_in) {
-        (IndoorRule::FloorAndCeiling, covered)
-    } else {
-        (IndoorRule::WalledIn, walled_in)
-    }
-}
-
-/// Regions of cells connected over their sides, in the order of their first cell.
-fn regions(grid: &Grid, is_member: &[bool]) -> Vec<Vec<usize>> {
-    let mut is_new = is_member.to_vec();
-    let mut regions = Vec::new();
-    for first in 0..is_member.len() {
-        if !is_new[first] {
-            continue;
-        }
-        is_new[first] = false;
-        let mut region = vec![first];
-        let mut reached = 0;
-        while let Some(&cell) = region.get(reached) {
-            reached += 1;
-            for beside in grid.beside(cell).into_iter().flatten() {
-                if is_new[beside] {
-                    is_new[beside] = false;
-                    region.push(beside);
-                }
-            }
-        }
-        regions.push(region);
-    }
-    regions
-}
-
-fn both(a: &[bool], b: &[bool]) -> Vec<bool> {
-    a.iter().zip(b).map(|(&a, &b)| a && b).collect()
-}
-
-/// Whether a triangle is less than 45 degrees from level.
-fn is_level([a, b, c]: &[[f64; 3]; 3]) -> bool {
-    let [u, v] = [b, c].map(|corner| [0, 1, 2].map(|axis| corner[axis] - a[axis]));
-    let normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-    normal[2] * normal[2] > normal[0] * normal[0] + normal[1] * normal[1]
 }
 
 /// Why a world has no free space.
