@@ -39,6 +39,11 @@ impl Learn {
         let default_output = || PathBuf::from(format!("{}.edgemap", file_stem(&site.world.name)));
         let path = self.output.clone().unwrap_or_else(default_output);
         console::check_overwrite(&path, self.force)?;
+        console::remark(&format!(
+            "a node for each {:.1} m2 of {}",
+            site.free_m2_per_node(),
+            site.free_space.describe()
+        ));
         let bytes = site.learn_map(&scenario, self.noise_draw).into_diagnostic()?;
         console::write_file(&path, &bytes)?;
         MapDescription::new(&path, &bytes)?.print(self.format)

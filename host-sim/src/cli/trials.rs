@@ -56,7 +56,11 @@ pub(super) fn run(scenario: Scenario, arguments: &RunArguments) -> Result<(RunFo
     let times = &outcome.look_times;
     let timings = RunTimings::new(&scenario.rows, &outcome.records, times, prepare_time, start.elapsed());
 
-    let map = MapFacts { bytes: outcome.map_bytes, segments_per_node: outcome.segments_per_node };
+    let map = MapFacts {
+        bytes: outcome.map_bytes,
+        segments_per_node: outcome.segments_per_node,
+        free_m2_per_node: site.free_m2_per_node(),
+    };
     let world = WorldFacts::new(&site.world, &scenario.world);
     let threads = pool.current_num_threads();
     let results = RunResults {

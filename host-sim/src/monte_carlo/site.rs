@@ -44,6 +44,12 @@ impl Site {
         learning::learn(&self.rig, &self.node_views, &scenario.uncertainty, scenario.seed, u64::from(map_index))
     }
 
+    /// The density of the nodes: free space for each \[m2\].
+    #[must_use]
+    pub fn free_m2_per_node(&self) -> f64 {
+        self.free_space.area_m2() / self.nodes.len() as f64
+    }
+
     /// What can be seen from `position` at camera height.
     #[must_use]
     pub fn viewpoint(&self, position: Point2) -> ViewpointVisibility<'_> {

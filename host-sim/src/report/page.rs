@@ -229,6 +229,7 @@ fn facts(results: &RunResults, has_world: bool) -> Markup {
                 dt { "edges" } dd { (world.edges) " straight edges, " (world.triangles) " triangles" }
                 dt { "checksum" } dd { code { (world.checksum) } }
                 dt { "map" } dd { (summary.nodes) " nodes of " (views) " views, " (format!("{:.0}", summary.map.segments_per_node)) " segments a node" }
+                dt { "density" } dd { "a node for each " (format!("{:.1}", summary.map.free_m2_per_node)) " m² of free space" }
                 dt { "map size" } dd { (format!("{:.0} kB", summary.map.bytes / 1e3)) }
                 dt { "noise draws" } dd { "the map is learned anew every " (scenario.trials_per_map) " trials" }
             }

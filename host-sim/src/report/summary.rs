@@ -36,6 +36,8 @@ pub struct MapFacts {
     pub bytes: f64,
     /// Segments in the model of a node.
     pub segments_per_node: f64,
+    /// Free space for each node \[m2\]: the density of the nodes.
+    pub free_m2_per_node: f64,
 }
 
 /// The figures of one row.
