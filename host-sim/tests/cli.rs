@@ -75,7 +75,7 @@ fn errors_name_the_place_the_reason_and_the_remedy() {
     for (arguments, code, expected) in [
         (&["run", "mine.toml"][..], 1, &["turn", "turn_deg", "mine.toml:3:1"][..]),
         (&["run", "zero.toml"], 1, &["trials = 0", "1 to 1000000", "zero.toml:1:10"]),
-        (&["run", "nowhere.toml"], 1, &["nowhere.toml", "paper-office"]),
+        (&["run", "nowhere.toml"], 1, &["nowhere.toml", "paper"]),
         (&["run", "smoke", "--set", "learning.nodse=3"], 1, &["nodse", "nodes"]),
         (&["run", "smoke", "--world", "broken.edgeworld"], 1, &["broken.edgeworld"]),
         (&["run", "smoke", "--world", "house.dae"], 1, &["world import", "house.dae"]),

@@ -25,7 +25,7 @@ pub(super) struct Demo {
 
 impl Demo {
     pub(super) fn execute(self) -> Result<()> {
-        let Some(scenario) = self.changes.load("paper-office")? else { return Ok(()) };
+        let Some(scenario) = self.changes.load("paper")? else { return Ok(()) };
         if self.format == Format::Text {
             console::print(&format!(
                 "A robot wakes up somewhere in an office that it has learned before: {} nodes of {} views each.\n\
@@ -49,7 +49,7 @@ impl Demo {
              Watch its worst trial:       {worst}\n\
              Draw the office:             edgeloc world generate --seed 1 && edgeloc world view office-1.edgeworld\n\
              Try your own building:       edgeloc world import BUILDING.world\n\
-             Change anything:             edgeloc run paper-office --print-config > my.toml\n\
+             Change anything:             edgeloc run paper --print-config > my.toml\n\
              (edgeloc is target/release/edgeloc here, or cargo run --release -- VERB)",
             report.display()
         ))

@@ -39,7 +39,7 @@ Examples:
   edgeloc                                        the demo: learn the bundled office, 2000 trials, a report
   edgeloc run smoke                              does everything work? a few seconds
   edgeloc world import small_house.world         make a world of a building
-  edgeloc run paper-office --world small_house.edgeworld
+  edgeloc run paper --world small_house.edgeworld
   edgeloc replay runs/latest --trial 17          one trial of a run, look by look
 
 Exit codes: 0 done, 1 failed, 2 wrong usage of the command line.";

@@ -13,7 +13,7 @@ use std::path::PathBuf;
 /// Replay one trial of a finished run, explained look by look; fails when it does not come out as recorded.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  edgeloc replay runs/latest --trial 17\n  \
-                        edgeloc replay runs/2026-01-31-paper-office --row 'anywhere, polarity' --trial 3")]
+                        edgeloc replay runs/2026-01-31-paper --row 'anywhere, polarity' --trial 3")]
 pub(super) struct Replay {
     /// Folder of the run.
     run: PathBuf,

@@ -15,7 +15,7 @@ use std::path::PathBuf;
 /// Print the figures of a finished run and write its report.html anew.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  edgeloc report runs/latest\n  edgeloc report runs/2026-01-31-paper-office --format json\n  \
+    after_help = "Examples:\n  edgeloc report runs/latest\n  edgeloc report runs/2026-01-31-paper --format json\n  \
                   edgeloc report runs/latest --plan plan.svg --row 'near, polarity'"
 )]
 pub(super) struct Report {

@@ -16,9 +16,9 @@ use std::path::Path;
 /// scenario gives the same bytes), nodes.csv, summary.json, timings.json, look_times.csv and report.html.
 /// runs/latest points at the newest.
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  edgeloc run smoke\n  edgeloc run paper-office --trials 900\n  \
+#[command(after_help = "Examples:\n  edgeloc run smoke\n  edgeloc run paper --trials 900\n  \
                         edgeloc run my.toml --world small_house.edgeworld --set localizer.turn_deg=60\n  \
-                        edgeloc run paper-office --print-config > my.toml\n\n\
+                        edgeloc run paper --print-config > my.toml\n\n\
                         JSON (--format json): folder, and summary = what summary.json holds: rates are fractions of 1, \
                         lengths in m, per row trials, successes, success_rate with its 95 % Wilson interval \
                         (success_rate_low, success_rate_high), looks, segments, unknown and errors.")]

@@ -1,6 +1,7 @@
 //! The arguments of every verb that works on a scenario.
 
 use super::console;
+use super::world::file_stem;
 use clap::Args;
 use edgeloc_sim::scenario::{Row, Scenario, WorldChoice};
 use miette::{Result, miette};
@@ -9,8 +10,8 @@ use std::path::PathBuf;
 /// Which scenario, and what to change in it.
 #[derive(Debug, Clone, Args)]
 pub(super) struct ScenarioArguments {
-    /// Scenario file (.toml), or a bundled scenario: paper-office, smoke.
-    #[arg(default_value = "paper-office")]
+    /// Scenario file (.toml), or a bundled scenario: paper, smoke.
+    #[arg(default_value = "paper")]
     scenario: String,
     #[command(flatten)]
     changes: ScenarioChanges,
@@ -19,7 +20,7 @@ pub(super) struct ScenarioArguments {
 /// What to change in a scenario.
 #[derive(Debug, Clone, Default, Args)]
 pub(super) struct ScenarioChanges {
-    /// World file (.edgeworld) instead of the scenario's world.
+    /// World file (.edgeworld) instead of the scenario's world; its name joins the scenario's.
     #[arg(long, value_name = "FILE")]
     pub(super) world: Option<PathBuf>,
     /// Change one setting, such as localizer.turn_deg=60 or rows.0.polarity=false; may be repeated.
@@ -58,6 +59,11 @@ impl ScenarioChanges {
         let mut scenario = Scenario::load(name, &settings)?;
         if let Some(world) = &self.world {
             let file = std::path::absolute(world).unwrap_or_else(|_| world.clone());
+            let is_named = |setting: &String| setting.split('=').next().is_some_and(|key| key.trim() == "name");
+            if !self.settings.iter().any(is_named) {
+                let building = world.file_stem().unwrap_or_default().to_string_lossy();
+                scenario.name = format!("{}-{}", scenario.name, file_stem(&building));
+            }
             scenario.world = WorldChoice::File { file };
         }
         if self.print_config {

@@ -47,7 +47,7 @@ impl Scenario {
             key: "rig".to_owned(),
             value: format!("{:?}", self.rig),
             legal: reason,
-            remedy: "the bundled scenario paper-office states each range: `edgeloc run --print-config`".to_owned(),
+            remedy: "the bundled scenario paper states each range: `edgeloc run --print-config`".to_owned(),
         })
     }
 

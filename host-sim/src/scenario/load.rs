@@ -185,8 +185,8 @@ mod tests {
     }
 
     #[test]
-    fn the_bundled_paper_office_states_exactly_the_default() {
-        assert_eq!(Scenario::load("paper-office", &[]).expect("bundled"), Scenario::default());
+    fn the_bundled_paper_setting_states_exactly_the_default() {
+        assert_eq!(Scenario::load("paper", &[]).expect("bundled"), Scenario::default());
     }
 
     #[test]

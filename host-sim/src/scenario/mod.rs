@@ -1,9 +1,9 @@
 //! Everything that defines a run: world, rig, learning, localiser and the rows of trials.
 //!
-//! A scenario is a TOML file, laid over the values of the bundled preset `paper-office` and under the
+//! A scenario is a TOML file, laid over the values of the bundled preset `paper` and under the
 //! `--set key=value` settings of the command line. It is checked once ([`Scenario::check`]) and written beside the
 //! results, so that a run can be repeated from what it left behind. Every field carries its unit in its name; the legal
-//! ranges stand in [`Scenario::check`] and in the bundled `paper-office.toml`.
+//! ranges stand in [`Scenario::check`] and in the bundled `paper.toml`.
 
 mod check;
 mod error;
@@ -51,11 +51,11 @@ pub struct Scenario {
 }
 
 impl Default for Scenario {
-    /// The paper's setting in the bundled office, the preset `paper-office`.
+    /// The paper's setting in the bundled office, the preset `paper`.
     fn default() -> Self {
         let row = |name: &str, start, polarity| Row { name: name.to_owned(), start, polarity };
         Self {
-            name: "paper-office".to_owned(),
+            name: "paper".to_owned(),
             seed: 1,
             trials: 500,
             trials_per_map: 50,

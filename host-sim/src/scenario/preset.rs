@@ -1,4 +1,4 @@
-//! The bundled scenarios: `paper-office`, the paper's setting and the base of every other scenario, and quick ones.
+//! The bundled scenarios: `paper`, the paper's setting in the bundled office and the base of every other scenario, and a quick one.
 
 /// A bundled scenario.
 #[derive(Debug, Clone, Copy)]
@@ -14,9 +14,9 @@ pub struct Preset {
 /// The bundled scenarios.
 pub const PRESETS: &[Preset] = &[
     Preset {
-        name: "paper-office",
+        name: "paper",
         summary: "the paper's setting in the generated office, 500 trials each of four rows",
-        text: include_str!("../../scenarios/paper-office.toml"),
+        text: include_str!("../../scenarios/paper.toml"),
     },
     Preset {
         name: "smoke",
