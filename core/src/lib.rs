@@ -31,7 +31,7 @@
 //!
 //! Histograms, coefficients, scores and margins are integers; float arithmetic is left to projection, where it
 //! is plain IEEE single precision in source order with `libm` for the functions. A trial therefore gives the
-//! identical decision and scores on x86-64, Cortex-M, aarch64 and wasm32.
+//! identical decision and scores on every machine; the gate proves it for x86-64 and an emulated Cortex-M7.
 #![no_std]
 
 #[cfg(test)]
@@ -43,3 +43,8 @@ pub mod localize;
 pub mod matching;
 pub mod math;
 pub mod pgh;
+
+/// The example of the README, so that it is compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+pub struct ReadmeExample;
