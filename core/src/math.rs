@@ -39,6 +39,18 @@ pub fn floor(x: f32) -> f32 {
     libm::floorf(x)
 }
 
+/// The greater of `a` and `b`; of equals, and beside a NaN, `a`. (`f32::max` leaves the sign of zero open.)
+#[must_use]
+pub fn max(a: f32, b: f32) -> f32 {
+    if b > a { b } else { a }
+}
+
+/// The lesser of `a` and `b`; of equals, and beside a NaN, `a`.
+#[must_use]
+pub fn min(a: f32, b: f32) -> f32 {
+    if b < a { b } else { a }
+}
+
 /// Magnitude of `x`.
 #[must_use]
 pub fn abs(x: f32) -> f32 {

@@ -9,7 +9,8 @@
 //! outcomes -> statistics -> report
 //! ```
 //!
-//! Arrows between modules point one way: `world < camera < uncertainty < learning < monte_carlo < report < cli`.
+//! Arrows between modules point one way: `random < world < camera < uncertainty < learning < scenario < monte_carlo <
+//! report < cli`.
 
 pub mod camera;
 pub mod learning;

@@ -48,7 +48,7 @@ fn more_trials_leave_the_first_ones_unchanged() {
 }
 
 #[test]
-fn a_noise_free_robot_on_a_node_is_right_at_the_first_look() {
+fn a_noise_free_robot_on_a_node_is_right_at_the_first_look_that_shows_five_segments() {
     let mut scenario = small_scenario();
     scenario.uncertainty = Sources::none();
     // Without a margin the first look that shows anything decides.

@@ -20,7 +20,8 @@ pub struct NodeModel<'a> {
 /// Bytes that [`write()`] needs for `nodes`; `None` if the database would pass 4 GiB.
 #[must_use]
 pub fn encoded_len(nodes: &[NodeModel<'_>]) -> Option<usize> {
-    format::total_len(nodes.len(), nodes.iter().map(|node| node.segments.len()).sum())
+    let segment_count = nodes.iter().try_fold(0_usize, |count, node| count.checked_add(node.segments.len()))?;
+    format::total_len(nodes.len(), segment_count)
 }
 
 /// Writes the database of `nodes`, learned by `rig` with so many views a node, to the beginning of `out`.
@@ -28,8 +29,8 @@ pub fn encoded_len(nodes: &[NodeModel<'_>]) -> Option<usize> {
 /// Returns the number of bytes written. Coordinates are rounded to millimetres.
 ///
 /// # Errors
-/// When there is no node or no view, a number does not fit the format, or `out` is too short. What `out` then holds does
-/// not open.
+/// When there is no node or no view, a number does not fit the format, or `out` is too short. What `out`
+/// then holds is of no use.
 pub fn write(
     rig: &StereoRig,
     views_per_node: u16,

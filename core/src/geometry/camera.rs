@@ -93,9 +93,9 @@ impl PinholeCamera {
         let (mut enter, mut leave) = (0.0_f32, 1.0_f32);
         for (outward, room) in borders {
             if outward < 0.0 {
-                enter = enter.max(room / outward);
+                enter = math::max(enter, room / outward);
             } else if outward > 0.0 {
-                leave = leave.min(room / outward);
+                leave = math::min(leave, room / outward);
             } else if room < 0.0 {
                 return None;
             }
@@ -103,16 +103,9 @@ impl PinholeCamera {
         if enter >= leave {
             return None;
         }
-        let inside = |p: Point2| Point2::new(p.x.clamp(0.0, width), p.y.clamp(0.0, height));
+        let within = |coordinate, side| math::max(math::min(coordinate, side), 0.0);
+        let inside = |p: Point2| Point2::new(within(p.x, width), within(p.y, height));
         Some((inside(start.lerp(end, enter)), inside(start.lerp(end, leave))))
-    }
-
-    /// Horizontal field of view \[rad\].
-    #[must_use]
-    pub fn horizontal_field_of_view(&self) -> f32 {
-        let left = math::atan2(self.principal_point_px.x, self.focal_length_px);
-        let right = math::atan2(f32::from(self.width_px) - self.principal_point_px.x, self.focal_length_px);
-        left + right
     }
 }
 
@@ -170,7 +163,8 @@ mod tests {
 
     #[test]
     fn the_reference_camera_sees_65_degrees() {
-        assert!((CAMERA.horizontal_field_of_view().to_degrees() - 65.0).abs() < 0.02);
+        let half = math::atan2(0.5 * f32::from(CAMERA.width_px()), CAMERA.focal_length_px());
+        assert!((2.0 * half.to_degrees() - 65.0).abs() < 0.02);
     }
 
     #[test]

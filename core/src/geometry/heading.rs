@@ -24,7 +24,7 @@ impl Heading {
         self.angle
     }
 
-    /// The heading after turning by `turn`; `None` if the turn is not finite.
+    /// The heading after turning by `turn`; `None` if the turn is not finite or beyond a thousand turns.
     #[must_use]
     pub fn turned(self, turn: Angle) -> Option<Self> {
         Self::new(Angle::from_radians(self.angle.radians() + turn.radians()))

@@ -48,6 +48,16 @@ impl<const CAPACITY: usize> SceneBuffer<CAPACITY> {
         })
     }
 
+    /// Replaces the scene by `segments`.
+    ///
+    /// # Errors
+    /// When there are more than fit: how many; the buffer is unchanged.
+    pub fn replace(&mut self, segments: &[Segment2]) -> Result<(), CapacityError> {
+        let too_many = CapacityError { what: "scene buffer segments", capacity: CAPACITY, needed: segments.len() };
+        self.segments = heapless::Vec::from_slice(segments).map_err(|_| too_many)?;
+        Ok(())
+    }
+
     /// Removes all segments.
     pub fn clear(&mut self) {
         self.segments.clear();

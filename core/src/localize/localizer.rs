@@ -8,7 +8,7 @@ use crate::database::{NodeId, TopologicalDatabase};
 use crate::geometry::{CapacityError, Heading, Segment2};
 use crate::matching::{Panel, PanelRow, RootRows, ViewScore, score_view};
 use crate::math;
-use crate::pgh::{HistogramBuilder, Line, LongestLines};
+use crate::pgh::{BuilderError, HistogramBuilder, Line, LongestLines};
 use core::fmt;
 
 /// Tells the robot where it is, look by look.
@@ -69,13 +69,13 @@ impl<'m> Localizer<'m> {
     /// After a [`Decision::Localized`] or [`Decision::Unknown`] the next look begins a new attempt.
     ///
     /// # Errors
-    /// When the look lacks what the localiser needs; nothing has changed then.
+    /// When the look lacks what the localiser needs; no score and no candidate has changed then.
     pub fn observe(&mut self, look: &Look<'_>) -> Result<Decision, ObserveError> {
         let heading = look.heading.ok_or(ObserveError::HeadingMissing)?.mean;
+        self.describe_scene(look.scene.segments())?;
         if self.is_finished {
             self.reset();
         }
-        self.describe_scene(look.scene.segments())?;
         self.score_candidates(heading);
         self.candidates.filter(self.margin);
         let decision = self.decide();
@@ -101,17 +101,11 @@ impl<'m> Localizer<'m> {
         self.scene.line_count
     }
 
-    /// The parameters in use.
-    #[must_use]
-    pub const fn config(&self) -> &LocalizerConfig {
-        &self.config
-    }
-
     fn describe_scene(&mut self, segments: &[Segment2]) -> Result<(), ObserveError> {
         let lines = keep_longest(segments.iter().copied(), &self.filter, &self.config, self.scene.lines);
         self.scene.line_count = lines.len();
         let mut builder =
-            HistogramBuilder::new(&self.config.shape, self.scene.masses).map_err(ObserveError::Capacity)?;
+            HistogramBuilder::new(&self.config.shape, self.scene.masses).map_err(ObserveError::Histograms)?;
         self.scene.rows.rebuild(&mut builder, lines).map_err(ObserveError::Capacity)
     }
 
@@ -222,6 +216,8 @@ impl core::error::Error for StartError {}
 pub enum ObserveError {
     /// The look has no heading, which this localiser needs.
     HeadingMissing,
+    /// Histograms can't be built.
+    Histograms(BuilderError),
     /// A part of the working memory is too small.
     Capacity(CapacityError),
 }
@@ -230,6 +226,7 @@ impl fmt::Display for ObserveError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::HeadingMissing => f.write_str("the look has no heading: the paper's localiser needs a compass"),
+            Self::Histograms(error) => error.fmt(f),
             Self::Capacity(error) => error.fmt(f),
         }
     }

@@ -9,7 +9,7 @@ use zerocopy::{FromBytes, Immutable, IntoBytes};
 ///
 /// With polarity the line is directed so that the brighter side lies to its left, and directions have the period
 /// 2 pi. Without, the line has no direction: it is walked so that its angle lies in `[0, pi)`, whichever end point
-/// came first. (That choice jumps only between near-horizontal lines, which no scene keeps.)
+/// came first. (That choice jumps only between near-horizontal lines, which the default exclusion drops.)
 #[derive(Debug, Clone, Copy, PartialEq, Eq, FromBytes, IntoBytes, Immutable)]
 #[repr(C)]
 pub struct Line {

@@ -21,10 +21,7 @@ mod longest_lines;
 mod root;
 mod shape;
 
-pub use builder::HistogramBuilder;
+pub use builder::{BuilderError, HistogramBuilder};
 pub use line::Line;
 pub use longest_lines::LongestLines;
 pub use shape::{DistanceKind, PghShape, ShapeError};
-
-/// One in the fixed-point format of root histograms.
-pub const ROOT_ONE: i16 = i16::MAX;

@@ -8,4 +8,4 @@ mod triangulation;
 pub use observation::{StereoFeature, StereoObservation, move_pieces};
 pub use observe::{left_segments, observe, observe_pieces};
 pub use pose::CameraPose;
-pub use triangulation::{MIN_LENGTH_PX, MIN_OVERLAP_PX, triangulate_feature, triangulate_pieces};
+pub use triangulation::{MIN_OVERLAP_PX, MIN_SHARED_LENGTH_PX, triangulate_feature, triangulate_pieces};

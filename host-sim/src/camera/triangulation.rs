@@ -7,7 +7,7 @@
 //! Near-horizontal pieces are ill-conditioned: where a line rises by one row in m columns, a vertical error of e rows
 //! is an error of m e columns in the disparity, m = 11.4 at 5 degrees; exactly horizontal ones have no overlap at all.
 //! The matcher leaves out those within 5 degrees of the horizontal (the epipolar removal among the uncertainty sources);
-//! here an overlap below [`MIN_OVERLAP_PX`] is refused, and with it what is shorter than [`MIN_LENGTH_PX`].
+//! here an overlap below [`MIN_OVERLAP_PX`] is refused, and with it what is shorter than [`MIN_SHARED_LENGTH_PX`].
 
 use super::StereoFeature;
 use edgeloc::geometry::{Point2, Point3, Segment2, Segment3, StereoRig};
@@ -17,9 +17,10 @@ pub const MIN_OVERLAP_PX: f32 = 1.0;
 
 /// Least length of the shared part in the left image, in pixels.
 ///
-/// The localiser leaves out what is shorter than 12 px, and turning on the spot lengthens an image by 1.4 at most: what
+/// The localiser leaves out what is shorter than 12 px, and turning on the spot lengthens an image by 1.4 at most
+/// within the reference field of view: what
 /// falls short of this is a splinter between two gaps that would only fill the map (a quarter of it, in an office).
-pub const MIN_LENGTH_PX: f32 = 6.0;
+pub const MIN_SHARED_LENGTH_PX: f32 = 6.0;
 
 /// The 3-D segments of one feature in the left camera's frame: one for each left and right piece that share rows.
 ///
@@ -34,7 +35,7 @@ pub fn triangulate_feature<'a>(rig: &'a StereoRig, feature: &'a StereoFeature) -
 
 /// The 3-D segment of a left and a right piece in the left camera's frame, directed and polarised like the left one.
 ///
-/// `None` when they share fewer than [`MIN_OVERLAP_PX`] rows or [`MIN_LENGTH_PX`] of the left piece, or when at either
+/// `None` when they share fewer than [`MIN_OVERLAP_PX`] rows or [`MIN_SHARED_LENGTH_PX`] of the left piece, or when at either
 /// end the disparity is not positive or the depth is outside the rig's `nearest_model_m` to `farthest_model_m`.
 #[must_use]
 pub fn triangulate_pieces(rig: &StereoRig, left: &Segment2, right: &Segment2) -> Option<Segment3> {
@@ -47,7 +48,7 @@ pub fn triangulate_pieces(rig: &StereoRig, left: &Segment2, right: &Segment2) ->
     let (start_row, end_row) = if left.start().y <= left.end().y { (top, bottom) } else { (bottom, top) };
     let start = Point2::new(column(left, start_row), start_row);
     let end = Point2::new(column(left, end_row), end_row);
-    if start.distance(end) < MIN_LENGTH_PX {
+    if start.distance(end) < MIN_SHARED_LENGTH_PX {
         return None;
     }
     let point = |left_point: Point2| triangulate_point(rig, left_point, column(right, left_point.y));

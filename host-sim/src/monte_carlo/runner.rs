@@ -82,8 +82,10 @@ fn run_block(
     let database = TopologicalDatabase::open(&bytes)?;
     let first = map * scenario.trials_per_map;
     let last = scenario.trials.min(first + scenario.trials_per_map);
-    let starts = [Start::Near, Start::Anywhere];
-    let tasks: Vec<(u32, Start)> = (first..last).flat_map(|trial| starts.map(|start| (trial, start))).collect();
+    let starts = || {
+        [Start::Near, Start::Anywhere].into_iter().filter(|start| scenario.rows.iter().any(|row| row.start == *start))
+    };
+    let tasks: Vec<(u32, Start)> = (first..last).flat_map(|trial| starts().map(move |start| (trial, start))).collect();
 
     let run_rows = |memory: &mut Vec<u64>, (trial, start): (u32, Start)| {
         let pose = draw_start(site, scenario, start, trial);

@@ -63,22 +63,8 @@ impl UncertaintySource for GeometricApproximation {
 
 impl GeometricApproximation {
     fn misplaced(&self, point: Point2, stream: &mut Stream) -> Point2 {
-        let error = circular_gaussian(stream);
+        let error = stream.circular_gaussian();
         Point2::new(point.x + (error[0] * self.magnitude) as f32, point.y + (error[1] * self.magnitude) as f32)
-    }
-}
-
-/// Two independent standard Gaussian numbers (the polar method, Marsaglia and Bray 1964).
-///
-/// Refused draws are a matter of chance, 21 % of them, never of the machine: only `sqrt` and `libm` are used.
-fn circular_gaussian(stream: &mut Stream) -> [f64; 2] {
-    loop {
-        let (x, y) = (stream.uniform(-1.0, 1.0), stream.uniform(-1.0, 1.0));
-        let square = x * x + y * y;
-        if square > 0.0 && square < 1.0 {
-            let scale = (-2.0 * libm::log(square) / square).sqrt();
-            return [x * scale, y * scale];
-        }
     }
 }
 

@@ -118,7 +118,8 @@ pub struct NoiseKey {
 }
 
 impl NoiseKey {
-    /// The noise of one look of a trial, looks counted from 0.
+    /// The noise of one look of a trial, looks counted from 0. Trials of one index share it wherever they start, as
+    /// common random numbers.
     #[must_use]
     pub const fn look(seed: u64, trial: u64, look: u32) -> Self {
         Self { seed, purpose: "psi-look", index: trial, part: look as u64 }
@@ -131,7 +132,7 @@ impl NoiseKey {
     }
 
     fn stream(&self, facts: &SourceFacts) -> Stream {
-        // A part has at most 48 bits, a stream's number 16, so that no two draws share a stream.
+        // A part has at most 48 bits, a stream's number 16, so that no two sources, looks or views share a stream.
         Stream::new(self.seed, self.purpose, self.index, self.part << 16 | u64::from(facts.stream_id))
     }
 }
