@@ -77,7 +77,7 @@ impl Manifest {
         Self {
             program_version: env!("CARGO_PKG_VERSION").to_owned(),
             git_commit: option_env!("EDGELOC_GIT_COMMIT").map(str::to_owned),
-            command: std::env::args().collect(),
+            command: std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect(),
             scenario: scenario.name.clone(),
             seed: scenario.seed,
             world,

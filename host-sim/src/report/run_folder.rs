@@ -16,8 +16,9 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use thiserror::Error;
 
-/// Longest file read back \[bytes\]: a million trials and room to spare.
-const MAX_FILE_BYTES: u64 = 512 << 20;
+/// Longest file read back \[bytes\]: 512 for each trial of the largest run; the longest line of `trials.csv`, with a
+/// row name of nothing but quotes, has about 420.
+const MAX_FILE_BYTES: u64 = 512 * Scenario::MAX_TOTAL_TRIALS;
 
 /// All that is known of a finished run.
 #[derive(Debug, Clone, PartialEq)]
@@ -159,17 +160,7 @@ impl RunFolder {
 
     fn read(&self, file: &str) -> Result<String, RunFolderError> {
         let path = self.path.join(file);
-        let mut text = String::new();
-        // Asked before opening: a pipe would wait for a writer.
-        let is_file = fs::metadata(&path).and_then(|metadata| match metadata.is_file() {
-            true => Ok(()),
-            false => Err(std::io::Error::other("it is not a file")),
-        });
-        is_file
-            .and_then(|()| fs::File::open(&path))
-            .and_then(|file| file.take(MAX_FILE_BYTES).read_to_string(&mut text))
-            .map_err(|source| RunFolderError::Read { path, source })?;
-        Ok(text)
+        read_text(&path, MAX_FILE_BYTES).map_err(|source| RunFolderError::Read { path, source })
     }
 
     fn read_json<T: DeserializeOwned>(&self, file: &str) -> Result<T, RunFolderError> {
@@ -185,6 +176,21 @@ impl RunFolder {
     fn damaged(&self, file: &str, reason: &dyn std::fmt::Display) -> RunFolderError {
         RunFolderError::Damaged { path: self.path.join(file), reason: reason.to_string() }
     }
+}
+
+/// The text of a file of at most `max_bytes`.
+fn read_text(path: &Path, max_bytes: u64) -> std::io::Result<String> {
+    // Asked before opening: a pipe would wait for a writer.
+    if !fs::metadata(path)?.is_file() {
+        return Err(std::io::Error::other("it is not a file"));
+    }
+    let mut text = String::new();
+    // One byte more than allowed tells too long from just fitting.
+    let length = fs::File::open(path)?.take(max_bytes + 1).read_to_string(&mut text)? as u64;
+    if length > max_bytes {
+        return Err(std::io::Error::other(format!("it is longer than {max_bytes} bytes, which no run writes")));
+    }
+    Ok(text)
 }
 
 #[cfg(unix)]
@@ -295,5 +301,15 @@ mod tests {
         folder.write("trials.csv", b"row,trial\nnear,many\n").expect("written");
         let error = folder.read_results().expect_err("damaged").to_string();
         assert!(error.contains("trials.csv"), "{error}");
+    }
+
+    #[test]
+    fn a_file_too_long_is_refused_not_cut() {
+        let parent = tempfile::tempdir().expect("a temporary folder");
+        let path = parent.path().join("trials.csv");
+        fs::write(&path, "12345").expect("written");
+        assert_eq!(read_text(&path, 5).expect("it just fits"), "12345");
+        let error = read_text(&path, 4).expect_err("too long").to_string();
+        assert!(error.contains("longer than 4 bytes"), "{error}");
     }
 }

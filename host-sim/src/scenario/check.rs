@@ -1,15 +1,17 @@
 //! The legal range of every value of a scenario.
 
 use super::error::IllegalValue;
-use super::{LocalizerSettings, Scenario};
+use super::{LocalizerSettings, Scenario, WorldChoice};
 use edgeloc::geometry::StereoRig;
 use std::fmt::Display;
 use std::ops::RangeInclusive;
 
-/// Longest name of a scenario or row, in bytes.
-const MAX_NAME_BYTES: usize = 100;
-
 impl Scenario {
+    /// Longest name of a scenario or row, in bytes.
+    pub const MAX_NAME_BYTES: usize = 100;
+    /// Most trials of all rows together.
+    pub const MAX_TOTAL_TRIALS: u64 = 1_000_000;
+
     /// Finds the first value outside its legal range.
     ///
     /// # Errors
@@ -22,6 +24,7 @@ impl Scenario {
         within("near_radius_m", self.near_radius_m, 0.0..=10.0, "a near start lies within 0.3 m of a node by default")?;
         within("learning.nodes", self.learning.nodes, 1..=4096, "the paper's office has 72")?;
         within("learning.views", self.learning.views, 1..=360, "12 views, 30 degrees apart, cover the circle")?;
+        self.check_world()?;
         self.check_rig()?;
         check_localizer(&self.localizer)?;
         self.check_uncertainty()?;
@@ -30,7 +33,7 @@ impl Scenario {
 
     fn check_name(&self) -> Result<(), IllegalValue> {
         let fits_a_file_name = !self.name.is_empty()
-            && self.name.len() <= MAX_NAME_BYTES
+            && self.name.len() <= Self::MAX_NAME_BYTES
             && !self.name.starts_with('.')
             && self.name.bytes().all(|byte| byte.is_ascii_alphanumeric() || b"-_.".contains(&byte));
         require(
@@ -40,6 +43,13 @@ impl Scenario {
             "1 to 100 letters, digits, '-', '_' or '.', not '.' first",
             || "it names the folder of the run; choose another name".to_owned(),
         )
+    }
+
+    fn check_world(&self) -> Result<(), IllegalValue> {
+        let WorldChoice::File { file } = &self.world else { return Ok(()) };
+        require(file.to_str().is_some(), "world.file", &file.display(), "a path in UTF-8", || {
+            "the scenario of a run is written as text; rename the file or its folder".to_owned()
+        })
     }
 
     fn check_rig(&self) -> Result<StereoRig, IllegalValue> {
@@ -68,10 +78,17 @@ impl Scenario {
         require((1..=100).contains(&count), "rows", &format!("{count} rows"), "1 to 100 rows", || {
             "add a [[rows]] table with name, start and polarity".to_owned()
         })?;
+        let total = u64::from(self.trials) * count as u64;
+        let legal = format!("at most {} trials of all rows together", Self::MAX_TOTAL_TRIALS);
+        let value = format!("{} in each of {count} rows", self.trials);
+        require(total <= Self::MAX_TOTAL_TRIALS, "trials", &value, &legal, || {
+            "the results of a larger run could not be read back; lower trials, or run the rows apart".to_owned()
+        })?;
         for (index, row) in self.rows.iter().enumerate() {
             let key = format!("rows.{index}.name");
-            let readable =
-                !row.name.is_empty() && row.name.len() <= MAX_NAME_BYTES && !row.name.chars().any(char::is_control);
+            let readable = !row.name.is_empty()
+                && row.name.len() <= Self::MAX_NAME_BYTES
+                && !row.name.chars().any(char::is_control);
             require(readable, &key, &row.name, "1 to 100 bytes without control characters", || {
                 "choose a short, readable name".to_owned()
             })?;
@@ -158,6 +175,15 @@ mod tests {
         let key = refused(|s| s.uncertainty.stereo_match.magnitude = 0.2);
         assert_eq!(key, "uncertainty.stereo_match.magnitude");
         assert_eq!(refused(|s| s.rows.clear()), "rows");
+        assert_eq!(refused(|s| s.trials = 250_001), "trials");
         assert_eq!(refused(|s| s.rows[1].name = s.rows[0].name.clone()), "rows.1.name");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_world_path_that_no_text_can_hold_is_refused() {
+        use std::os::unix::ffi::OsStrExt;
+        let file = std::path::PathBuf::from(std::ffi::OsStr::from_bytes(b"a\xff.edgeworld"));
+        assert_eq!(refused(|s| s.world = WorldChoice::File { file }), "world.file");
     }
 }
