@@ -93,6 +93,29 @@ fn errors_name_the_place_the_reason_and_the_remedy() {
     }
 }
 
+#[cfg(unix)]
+#[test]
+fn a_world_path_that_is_not_text_is_refused_before_anything_runs() {
+    use std::os::unix::ffi::OsStrExt;
+    let world = std::ffi::OsStr::from_bytes(b"a\xff.edgeworld");
+    for last in [&["--print-config"][..], &[]] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_edgeloc"));
+        let output = command.args(["run", "smoke", "--world"]).arg(world).args(last).output().expect("it starts");
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{stderr}");
+        assert!(stderr.contains("world.file") && stderr.contains("UTF-8"), "{stderr}");
+    }
+}
+
+#[test]
+fn a_long_world_name_still_gives_a_configuration_that_runs() {
+    let folder = folder();
+    let world = format!("{}.edgeworld", "w".repeat(99));
+    let text = done(folder.path(), &["run", "smoke", "--world", &world, "--print-config"]);
+    std::fs::write(folder.path().join("again.toml"), &text).expect("written");
+    assert_eq!(done(folder.path(), &["run", "again.toml", "--print-config"]), text);
+}
+
 #[test]
 fn the_printed_configuration_runs_as_it_is() {
     let folder = folder();

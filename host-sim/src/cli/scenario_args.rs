@@ -3,7 +3,7 @@
 use super::console;
 use super::world::file_stem;
 use clap::Args;
-use edgeloc_sim::scenario::{Row, Scenario, WorldChoice};
+use edgeloc_sim::scenario::{Row, Scenario, ScenarioError, WorldChoice};
 use miette::{Result, miette};
 use std::path::PathBuf;
 
@@ -62,9 +62,16 @@ impl ScenarioChanges {
             let is_named = |setting: &String| setting.split('=').next().is_some_and(|key| key.trim() == "name");
             if !self.settings.iter().any(is_named) {
                 let building = world.file_stem().unwrap_or_default().to_string_lossy();
+                // Both parts are ASCII, so that any byte is a place to cut.
                 scenario.name = format!("{}-{}", scenario.name, file_stem(&building));
+                scenario.name.truncate(Scenario::MAX_NAME_BYTES);
             }
             scenario.world = WorldChoice::File { file };
+            scenario.check().map_err(|illegal| ScenarioError::Illegal {
+                illegal: Box::new(illegal),
+                text: None,
+                place: None,
+            })?;
         }
         if self.print_config {
             console::print(&scenario.to_toml())?;
