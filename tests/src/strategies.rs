@@ -51,10 +51,10 @@ pub fn matched_scene(size: RangeInclusive<usize>) -> impl Strategy<Value = Vec<S
     vec(matched_segment(), size)
 }
 
-/// Any shape of up to 60 x 64 bins with interpolated angles.
+/// Any shape of 2 to 60 by up to 64 bins with interpolated angles; a single distance bin could be too wide to serve.
 pub fn interpolated_shape() -> impl Strategy<Value = PghShape> {
     let distance = prop_oneof![Just(DistanceKind::Signed), Just(DistanceKind::Unsigned)];
-    (1..=60_u16, 1..=64_u16, 100.0..800.0_f32, distance, any::<bool>()).prop_map(
+    (2..=60_u16, 1..=64_u16, 100.0..800.0_f32, distance, any::<bool>()).prop_map(
         |(distance_bins, angle_bins, max_distance_px, distance, uses_polarity)| PghShape {
             distance_bins,
             angle_bins,
