@@ -8,15 +8,15 @@ use edgeloc::geometry::{Heading, Point2, Point3, Polarity, Segment2, Segment3, S
 use edgeloc_sim::random::Stream;
 use edgeloc_sim::world::{Surfaces, WireframeWorld};
 
-/// Length, depth and height of the rooms [m]; the floor's corner is the origin.
+/// Length, depth and height of the rooms \[m\]; the floor's corner is the origin.
 pub const ROOM_SIZE_M: [f32; 3] = [8.0, 6.0, 2.5];
 
 /// A node as a test makes it by hand.
 #[derive(Debug, Clone, Default)]
 pub struct TinyNode {
-    /// Position in the world frame [m].
+    /// Position in the world frame \[m\].
     pub position: Point2,
-    /// Segments in the node frame [m].
+    /// Segments in the node frame \[m\].
     pub segments: Vec<Segment3>,
 }
 

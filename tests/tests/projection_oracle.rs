@@ -11,10 +11,10 @@ use proptest::prelude::*;
 
 const RIG: StereoRig = StereoRig::reference();
 
-/// Greatest distance between the two images of an end point [px].
+/// Greatest distance between the two images of an end point \[px\].
 const END_POINT_ERROR_PX: f64 = 0.01;
 
-/// A segment this short may be seen by the one and not by the other [px].
+/// A segment this short may be seen by the one and not by the other \[px\].
 const SLIVER_PX: f64 = 0.1;
 
 fn heading(degrees: f32) -> Heading {

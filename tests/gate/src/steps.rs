@@ -61,7 +61,7 @@ fn format(workspace: &Workspace) -> Outcome {
 
 fn lint(workspace: &Workspace) -> Outcome {
     run_all([
-        workspace.cargo("", "clippy --workspace --all-targets -- -D warnings"),
+        workspace.cargo("", "clippy --locked --workspace --all-targets -- -D warnings"),
         workspace.cargo(QEMU_BOARD, "clippy --locked -- -D warnings"),
     ])
 }
@@ -72,19 +72,19 @@ fn docs(workspace: &Workspace) -> Outcome {
         command
     };
     run_all([
-        strict(workspace.cargo("", "doc --workspace --no-deps")),
+        strict(workspace.cargo("", "doc --locked --workspace --no-deps")),
         strict(workspace.cargo(QEMU_BOARD, "doc --locked --workspace --no-deps")),
     ])
 }
 
 fn tests(workspace: &Workspace) -> Outcome {
-    run_all([workspace.cargo("", "test --workspace --no-fail-fast")])
+    run_all([workspace.cargo("", "test --locked --workspace --no-fail-fast")])
 }
 
 fn units(workspace: &Workspace) -> Outcome {
     run_all([
-        workspace.cargo("", "test --workspace --no-fail-fast --lib --bins"),
-        workspace.cargo("", "test --package edgeloc-tests --test layering"),
+        workspace.cargo("", "test --locked --workspace --no-fail-fast --lib --bins"),
+        workspace.cargo("", "test --locked --package edgeloc-tests --test layering"),
     ])
 }
 
@@ -103,11 +103,13 @@ fn buildings(workspace: &Workspace) -> Outcome {
 
 /// `cargo test` rather than `cargo bench`: criterion then runs each benchmark once, without a second optimised build.
 fn benches(workspace: &Workspace) -> Outcome {
-    run_all([workspace.cargo("", "test --package edgeloc-benches --benches")])
+    run_all([workspace.cargo("", "test --locked --package edgeloc-benches --benches")])
 }
 
 fn thumb(workspace: &Workspace) -> Outcome {
-    run_all(THUMB_TARGETS.map(|target| workspace.cargo("", &format!("build --package edgeloc --target {target}"))))
+    run_all(
+        THUMB_TARGETS.map(|target| workspace.cargo("", &format!("build --locked --package edgeloc --target {target}"))),
+    )
 }
 
 /// The board's own cargo configuration names its target and its runner, which ends the emulator after a time limit.

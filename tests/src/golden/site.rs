@@ -16,7 +16,7 @@ const SEED: u64 = 20;
 const NODE_COUNT: usize = 10;
 /// Views learned at each node.
 const VIEW_COUNT: u16 = 12;
-/// Greatest distance of a near start from its node, along each axis [m].
+/// Greatest distance of a near start from its node, along each axis \[m\].
 const NEAR_M: f64 = 0.2;
 
 /// The office and the nodes in it.

@@ -14,7 +14,7 @@ use super::segment::wrapped;
 use edgeloc::pgh::{DistanceKind, PghShape};
 use std::f64::consts::PI;
 
-/// Least width of the span of distances that a segment's mass is spread over [px].
+/// Least width of the span of distances that a segment's mass is spread over \[px\].
 const LEAST_SPAN_PX: f64 = 1.0;
 
 /// One pairwise geometric histogram: masses by distance bin and angle bin.
@@ -80,7 +80,7 @@ pub fn scene_histograms(shape: &PghShape, segments: &[NaiveSegment]) -> Vec<Hist
     (0..segments.len()).map(|index| histogram(shape, segments, index).normalized()).collect()
 }
 
-/// Least and greatest signed perpendicular distance of `segment` from the line through `reference` [px].
+/// Least and greatest signed perpendicular distance of `segment` from the line through `reference` \[px\].
 fn span(shape: &PghShape, reference: &NaiveSegment, segment: &NaiveSegment) -> (f64, f64) {
     let direction = reference.direction(shape.uses_polarity);
     let (normal, foot) = ([-direction.sin(), direction.cos()], reference.midpoint());

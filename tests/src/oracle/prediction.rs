@@ -3,7 +3,7 @@
 use super::NaiveSegment;
 use edgeloc::geometry::{PinholeCamera, Point3, Segment3, StereoRig};
 
-/// The image of node-frame segments (origin at the camera, z up) for a camera looking along `heading` [rad].
+/// The image of node-frame segments (origin at the camera, z up) for a camera looking along `heading` \[rad\].
 ///
 /// Those not seen at all are left out.
 #[must_use]

@@ -1,9 +1,9 @@
-//! A straight edge in the image in `f64` [px], with the direction and length that the histograms ask for.
+//! A straight edge in the image in `f64` \[px\], with the direction and length that the histograms ask for.
 
 use edgeloc::geometry::{Polarity, Segment2};
 use std::f64::consts::PI;
 
-/// A straight edge in the image [px].
+/// A straight edge in the image \[px\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NaiveSegment {
     /// First end point.
@@ -21,20 +21,20 @@ impl NaiveSegment {
         Self { start, end, polarity: Polarity::LeftBrighter }
     }
 
-    /// Length [px].
+    /// Length \[px\].
     #[must_use]
     pub fn length_px(&self) -> f64 {
         let [x, y] = self.along();
         x.hypot(y)
     }
 
-    /// Midpoint [px].
+    /// Midpoint \[px\].
     #[must_use]
     pub fn midpoint(&self) -> [f64; 2] {
         [0.5 * (self.start[0] + self.end[0]), 0.5 * (self.start[1] + self.end[1])]
     }
 
-    /// Direction in the image frame [rad].
+    /// Direction in the image frame \[rad\].
     ///
     /// Without polarity an edge has no sense: its direction lies in `[0, pi)`. With polarity it lies in `[0, 2 pi)`, from
     /// start to end, turned by pi when the right side is the brighter, so that the order of the end points carries
@@ -52,7 +52,7 @@ impl NaiveSegment {
         }
     }
 
-    /// The angle to the image's horizontal [rad], in `[0, pi / 2]`.
+    /// The angle to the image's horizontal \[rad\], in `[0, pi / 2]`.
     #[must_use]
     pub fn angle_to_horizontal(&self) -> f64 {
         let [x, y] = self.along();
