@@ -213,6 +213,13 @@ mod tests {
     }
 
     #[test]
+    fn the_british_localiser_is_understood_and_written_american() {
+        let scenario = load_text("[localiser]\nturn_deg = 60.0\n", &["localizer.max_looks=5"]).expect("legal");
+        assert_eq!((scenario.localizer.turn_deg, scenario.localizer.max_looks), (60.0, 5));
+        assert!(!scenario.to_toml().contains("localiser"));
+    }
+
+    #[test]
     fn a_world_is_a_seed_or_a_file_whichever_is_set_last() {
         let file = load_text("", &["world.file=/a/b.edgeworld"]).expect("legal");
         assert_eq!(file.world, WorldChoice::File { file: PathBuf::from("/a/b.edgeworld") });

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 pub struct LocalizerSettings {
     /// Which localiser.
     pub kind: LocalizerKind,
-    /// B_th: how far a node's score may lie below the leader's at the first look (paper, section 3.3).
+    /// B_th: how far a node's score may lie below the leader's at the first look (paper, section 3.2).
     pub score_margin: f64,
     /// Turn before the next look in degrees, counter-clockwise.
     pub turn_deg: f64,
@@ -74,7 +74,7 @@ pub enum LocalizerKind {
     Paper,
 }
 
-/// Size and reading of the pairwise geometric histograms (paper, section 3.1).
+/// Size and reading of the pairwise geometric histograms (paper, section 3.2).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PghSettings {

@@ -42,7 +42,8 @@ pub struct Scenario {
     pub rig: RigSettings,
     /// How the world is learned.
     pub learning: LearningSettings,
-    /// The localiser.
+    /// The localiser; its British spelling is understood too.
+    #[serde(alias = "localiser")]
     pub localizer: LocalizerSettings,
     /// The uncertainty sources, in learning and in trials alike.
     pub uncertainty: Sources,

@@ -14,7 +14,8 @@ pub enum WorldChoice {
     },
     /// A world file, as `edgeloc world generate` and `edgeloc world import` write it.
     File {
-        /// Path of the file; relative to the current folder.
+        /// Path of the file; a relative one in a scenario file counts from that file's folder, one of `--set` or
+        /// `--world` from the current folder.
         file: PathBuf,
     },
 }
