@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 pub struct Manifest {
     /// Version of the program.
     pub program_version: String,
-    /// Commit the program was built from, when it was built in a repository.
+    /// Commit the program was built from, with `-dirty` when its sources differ; none outside its repository.
     pub git_commit: Option<String>,
     /// The command line.
     pub command: Vec<String>,
