@@ -51,12 +51,13 @@ pub(super) fn remarks(results: &RunResults) -> String {
         .map(|(timings, row)| timings.mean_s_per_look * row.mean_looks * row.trials as f64 / looks.max(1.0));
     let localizer_s = looks * mean_s_per_look.sum::<f64>() / results.manifest.host.used_threads.max(1) as f64;
     format!(
-        "map: {} nodes, one for each {:.1} m2 of free space; {:.0} segments a node, {:.0} kB\n\
+        "ms a look: mean wall time of the localiser alone, on one thread\n\
+         map: {} nodes, one for each {:.1} m2 of free space; {:.0} segments a node, {:.0} kB\n\
          time: {:.1} s; {:.1} s to prepare, {:.1} s for trials, of which the localiser took {localizer_s:.1} s ({} threads)",
         summary.nodes,
         summary.map.free_m2_per_node,
-        summary.map.segments_per_node,
-        summary.map.bytes / 1e3,
+        summary.map.mean_segments_per_node,
+        summary.map.mean_bytes / 1e3,
         timings.total_s(),
         timings.prepare_s,
         timings.trials_s,

@@ -57,8 +57,8 @@ pub(super) fn run(scenario: Scenario, arguments: &RunArguments) -> Result<(RunFo
     let timings = RunTimings::new(&scenario.rows, &outcome.records, times, prepare_time, start.elapsed());
 
     let map = MapFacts {
-        bytes: outcome.map_bytes,
-        segments_per_node: outcome.segments_per_node,
+        mean_bytes: outcome.map_bytes,
+        mean_segments_per_node: outcome.segments_per_node,
         free_m2_per_node: site.free_m2_per_node(),
     };
     let world = WorldFacts::new(&site.world, &scenario.world);

@@ -7,8 +7,8 @@ use crate::scenario::Row;
 use svg::Node;
 use svg::node::element::{Circle, Group, Path, Rectangle, SVG};
 
-/// Borders of the distance bins in metres; finer where near starts lie.
-const DISTANCE_BORDERS_M: [f64; 12] = [0.0, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0, 3.0];
+/// Borders of the distance bins in metres; finer where near starts lie, and open at the end.
+const DISTANCE_BORDERS_M: [f64; 13] = [0.0, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0, 3.0, f64::INFINITY];
 /// Bins of fewer trials say nothing and are left out.
 const MIN_TRIALS_PER_BIN: u64 = 5;
 
@@ -53,7 +53,7 @@ pub fn success_by_distance(rows: &[Row], records: &[TrialRecord]) -> SVG {
             .add(tooltip(format!("the paper: {}", percent(PAPER_RATE)))),
     );
     for bin in 0..bins {
-        let label = format!("{} – {}", DISTANCE_BORDERS_M[bin], DISTANCE_BORDERS_M[bin + 1]);
+        let label = bin_label(bin, " – ");
         let middle = axes.x((bin as f64 + 0.5) * slot);
         chart.append(text("middle", (middle, axes.y(0.0) + 20.0), label));
         if bin > 0 {
@@ -84,6 +84,12 @@ fn shown_bins(rows: &[Row], records: &[TrialRecord]) -> usize {
     (0..DISTANCE_BORDERS_M.len() - 1).rfind(has_enough).unwrap_or(2) + 1
 }
 
+/// The distances of a bin in metres: from, `joint`, to.
+fn bin_label(bin: usize, joint: &str) -> String {
+    let (from, to) = (DISTANCE_BORDERS_M[bin], DISTANCE_BORDERS_M[bin + 1]);
+    if to.is_finite() { format!("{from}{joint}{to}") } else { format!("over {from}") }
+}
+
 fn success_in_bin(row: &Row, records: &[TrialRecord], bin: usize) -> SuccessRate {
     let range = DISTANCE_BORDERS_M[bin]..DISTANCE_BORDERS_M[bin + 1];
     let in_bin = |record: &&TrialRecord| range.contains(&f64::from(record.nearest_node_distance_m));
@@ -104,7 +110,6 @@ fn distance_series(
     let mut trace = String::new();
     let mut marks = Vec::new();
     for bin in 0..bins {
-        let (from, to) = (DISTANCE_BORDERS_M[bin], DISTANCE_BORDERS_M[bin + 1]);
         let success = success_in_bin(row, records, bin);
         let Some(rate) = success.rate().filter(|_| success.trials >= MIN_TRIALS_PER_BIN) else { continue };
         let (low, high) = success.success_interval();
@@ -112,7 +117,7 @@ fn distance_series(
         trace.push_str(&format!("{}{x} {y}", if trace.is_empty() { "M" } else { "L" }));
         marks.push(
             Group::new()
-                .add(tooltip(format!("{}, {from} to {to} m: {success}", row.name)))
+                .add(tooltip(format!("{}, {} m: {success}", row.name, bin_label(bin, " to "))))
                 .add(line("whisker", (x, axes.y(low)), (x, axes.y(high))))
                 .add(Circle::new().set("class", "dot").set("cx", x).set("cy", y).set("r", 4)),
         );
@@ -149,7 +154,7 @@ pub fn looks_histogram(row: &Row, records: &[TrialRecord], max_looks: u16) -> SV
         let looks = if index + 1 == bars && bars < usize::from(max_looks) {
             format!("{} or more looks", index + 1)
         } else {
-            format!("{} looks", index + 1)
+            format!("{} look{}", index + 1, if index == 0 { "" } else { "s" })
         };
         let share = |count: u32| f64::from(count) / f64::from(most);
         let mut group = Group::new().add(tooltip(format!("{looks}: {good} right, {bad} not")));
@@ -217,12 +222,25 @@ mod tests {
     fn every_trial_counts_in_the_looks_histogram() {
         let results = sample::run().results;
         let chart = looks_histogram(&results.scenario.rows[0], &results.records, 12).to_string();
-        let numbers = chart.split("looks: ").skip(1).map(|rest| {
-            let (good, rest) = rest.split_once(" right, ").expect("a tooltip");
-            let (bad, _) = rest.split_once(" not").expect("a tooltip");
-            good.parse::<u32>().expect("a count") + bad.parse::<u32>().expect("a count")
-        });
+        assert!(chart.contains("1 look: ") && chart.contains("2 looks: "));
+        let numbers = chart
+            .split(" right, ")
+            .map_while(|before| before.rsplit_once(": "))
+            .zip(chart.split(" right, ").skip(1).map(|after| after.split_once(" not").expect("a tooltip").0));
+        let numbers = numbers
+            .map(|((_, good), bad)| good.parse::<u32>().expect("a count") + bad.parse::<u32>().expect("a count"));
         assert_eq!(numbers.sum::<u32>(), results.scenario.trials);
+    }
+
+    #[test]
+    fn trials_far_from_every_node_stand_in_the_open_last_bin() {
+        let results = sample::run().results;
+        let mut records = results.records.clone();
+        for record in &mut records {
+            record.nearest_node_distance_m = 7.5;
+        }
+        let chart = success_by_distance(&results.scenario.rows, &records).to_string();
+        assert!(chart.contains("over 3") && chart.contains(&format!("{}, over 3 m: ", results.scenario.rows[0].name)));
     }
 
     #[test]

@@ -10,8 +10,11 @@ use svg::node::element::{Circle, Group, Path, SVG};
 
 /// Width of a plan [px of its frame].
 const WIDTH_PX: f64 = 1000.0;
-/// Room around the world in metres.
+/// Room around what the plan must show in metres.
 const MARGIN_M: f64 = 0.5;
+/// Further room around the free space in metres, so that the walls and furniture that bound it are shown: the robot
+/// keeps its own radius away from them.
+const BEYOND_FREE_M: f64 = 0.5;
 /// Greatest height to width; a taller world is drawn narrower.
 const MAX_ASPECT: f64 = 1.5;
 
@@ -45,7 +48,10 @@ impl FloorPlan {
     pub fn new(world: Option<&WireframeWorld>, free: Option<&FreeCells>, nodes: &[Point2]) -> Self {
         let places = free.map_or(&[][..], |free| &free.centers).iter().chain(nodes);
         let (min_m, max_m) = bounds(places.copied())
-            .map(|(min, max)| ((min.0 - 0.5, min.1 - 0.5), (max.0 + 0.5, max.1 + 0.5)))
+            .map(|(min, max)| {
+                let room = BEYOND_FREE_M;
+                ((min.0 - room, min.1 - room), (max.0 + room, max.1 + room))
+            })
             .or_else(|| bounds(world?.edges.iter().flat_map(|edge| [edge.start, edge.end]).map(above)))
             .unwrap_or(((0.0, 0.0), (1.0, 1.0)));
         let min_m = (min_m.0 - MARGIN_M, min_m.1 - MARGIN_M);

@@ -79,7 +79,8 @@ fn headline(results: &RunResults) -> Markup {
             "A trial succeeds when the answered node is one of the two nearest to the true position. Brackets and bars are "
             "95 % Wilson intervals. The paper reports " (percent(summary.paper_rate)) " ["
             (format!("{:.1}, {:.1}", 100.0 * low, 100.0 * high)) "] in simulation (dashed, shown beside the near starts); "
-            "blind guessing gives " (percent(summary.chance_rate)) " (dotted)."
+            "blind guessing gives " (percent(summary.chance_rate)) " (dotted). Time per look is the mean wall time of the "
+            "localiser alone, on one thread."
         }
         div.wide { table {
             tr {
@@ -90,6 +91,12 @@ fn headline(results: &RunResults) -> Markup {
             @for (series, row) in summary.rows.iter().enumerate() { (headline_row(results, series, row)) }
         } }
     } }
+}
+
+/// A commit as people write it; `-dirty` stays.
+fn short_commit(commit: &str) -> String {
+    let (hash, mark) = commit.split_once('-').map_or((commit, ""), |(hash, _)| (hash, "-dirty"));
+    format!("{}{mark}", hash.get(..12).unwrap_or(hash))
 }
 
 fn headline_row(results: &RunResults, series: usize, row: &RowSummary) -> Markup {
@@ -228,13 +235,13 @@ fn facts(results: &RunResults, has_world: bool) -> Markup {
                 @if let Some(file) = &world.file { dt { "file" } dd { (file) @if !has_world { " (not found for this report)" } } }
                 dt { "edges" } dd { (world.edges) " straight edges, " (world.triangles) " triangles" }
                 dt { "checksum" } dd { code { (world.checksum) } }
-                dt { "map" } dd { (summary.nodes) " nodes of " (views) " views, " (format!("{:.0}", summary.map.segments_per_node)) " segments a node" }
+                dt { "map" } dd { (summary.nodes) " nodes of " (views) " views, " (format!("{:.0}", summary.map.mean_segments_per_node)) " segments a node" }
                 dt { "density" } dd { "a node for each " (format!("{:.1}", summary.map.free_m2_per_node)) " m² of free space" }
-                dt { "map size" } dd { (format!("{:.0} kB", summary.map.bytes / 1e3)) }
+                dt { "map size" } dd { (format!("{:.0} kB", summary.map.mean_bytes / 1e3)) }
                 dt { "noise draws" } dd { "the map is learned anew every " (scenario.trials_per_map) " trials" }
             }
             dl {
-                dt { "program" } dd { "edgeloc " (manifest.program_version) @if let Some(commit) = &manifest.git_commit { ", commit " code { (commit.get(..12).unwrap_or(commit)) } } }
+                dt { "program" } dd { "edgeloc " (manifest.program_version) @if let Some(commit) = &manifest.git_commit { ", commit " code { (short_commit(commit)) } } }
                 dt { "command" } dd { code { (manifest.command.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ")) } }
                 dt { "seed" } dd { (manifest.seed) }
                 dt { "wall time" } dd { (format!("{:.1} s: {:.1} s to prepare, {:.1} s for learning and trials", timings.total_s(), timings.prepare_s, timings.trials_s)) }

@@ -37,7 +37,7 @@ pub(crate) fn run() -> Sample {
     let look_times = look_times.collect::<Vec<_>>();
     let (prepare, trials) = (Duration::from_secs(2), Duration::from_secs(31));
     let timings = RunTimings::new(&scenario.rows, &records, &look_times, prepare, trials);
-    let map = MapFacts { bytes: 540_000.0, segments_per_node: 622.5, free_m2_per_node: 2.5 };
+    let map = MapFacts { mean_bytes: 540_000.0, mean_segments_per_node: 622.5, free_m2_per_node: 2.5 };
     let summary = Summary::new(&scenario, &nodes, map, &records);
     let world = world();
     let facts = WorldFacts::new(&world, &scenario.world);

@@ -17,7 +17,7 @@ pub struct Summary {
     pub scenario: String,
     /// Nodes of the map.
     pub nodes: usize,
-    /// The map as learned, mean over its noise draws.
+    /// The map as learned.
     pub map: MapFacts,
     /// Success rate of blind guessing, a fraction: two of the nodes are right.
     pub chance_rate: f64,
@@ -29,13 +29,13 @@ pub struct Summary {
     pub rows: Vec<RowSummary>,
 }
 
-/// Size of a learned map.
+/// Size of a learned map, mean over its noise draws.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct MapFacts {
-    /// Bytes of the database.
-    pub bytes: f64,
-    /// Segments in the model of a node.
-    pub segments_per_node: f64,
+    /// Mean bytes of the database.
+    pub mean_bytes: f64,
+    /// Mean segments in the model of a node.
+    pub mean_segments_per_node: f64,
     /// Free space for each node \[m2\]: the density of the nodes.
     pub free_m2_per_node: f64,
 }
