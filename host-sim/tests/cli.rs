@@ -66,6 +66,21 @@ fn the_help_of_every_verb_has_an_example() {
     }
 }
 
+/// Checks that the help of `verb` tells every field of the JSON it printed.
+fn assert_documented(folder: &Path, verb: &[&str], printed: &serde_json::Value) {
+    let help = done(folder, &[verb, &["--help"]].concat());
+    let fields = help.split_once("JSON (--format json): ").expect("a list of fields").1;
+    let words = fields.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').collect::<Vec<_>>();
+    let mut values = vec![printed];
+    while let Some(value) = values.pop() {
+        values.extend(value.as_array().into_iter().flatten());
+        for (key, inner) in value.as_object().into_iter().flatten() {
+            assert!(words.contains(&key.as_str()), "{verb:?} does not tell of {key}: {fields}");
+            values.push(inner);
+        }
+    }
+}
+
 #[test]
 fn errors_name_the_place_the_reason_and_the_remedy() {
     let folder = folder();
@@ -132,6 +147,8 @@ fn a_world_is_generated_described_drawn_learned_and_localised_in() {
     let made = json(&done(path, &["world", "generate", "--seed", "3", "--format", "json"]));
     let info = json(&done(path, &["world", "info", "office-3.edgeworld", "--format", "json"]));
     assert_eq!(made, info);
+    assert_documented(path, &["world", "generate"], &made);
+    assert_documented(path, &["world", "info"], &info);
     assert!(info["edges"].as_u64().is_some_and(|edges| edges > 5000), "{info}");
     assert!(info["free_space"]["area_m2"].as_f64().is_some_and(|area| area > 50.0), "{info}");
 
@@ -142,12 +159,16 @@ fn a_world_is_generated_described_drawn_learned_and_localised_in() {
     let map = json(&done(path, &[&["learn", "smoke", "--nodes", "4", "--format", "json"][..], &world].concat()));
     let again = json(&done(path, &["map", "info", "office-3.edgemap", "--format", "json"]));
     assert_eq!(map, again);
+    assert_documented(path, &["learn"], &map);
+    assert_documented(path, &["map", "info"], &map);
     assert_eq!(map["nodes"], 4);
 
     let place = format!("{},{}", map["positions"][2]["x_m"], map["positions"][2]["y_m"]);
     let at = ["--at", &place, "--heading-deg", "30", "--format", "json", "--out", "drawings"];
     let attempt = json(&done(path, &[&["locate", "smoke", "--nodes", "4"][..], &world, &at].concat()));
     assert_eq!(attempt["record"]["nearest_node"], 2);
+    assert_documented(path, &["locate"], &attempt);
+    assert_documented(path, &["replay"], &attempt);
     assert_eq!(attempt["looks"].as_array().map(Vec::len), attempt["drawings"].as_array().map(Vec::len));
     assert!(path.join("drawings/look-01.svg").is_file());
 
@@ -161,6 +182,16 @@ fn a_world_is_generated_described_drawn_learned_and_localised_in() {
 }
 
 #[test]
+fn a_mesh_is_imported_and_every_field_of_the_account_is_told() {
+    let folder = folder();
+    let tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+    std::fs::write(folder.path().join("tent.obj"), tetrahedron).expect("written");
+    let imported = json(&done(folder.path(), &["world", "import", "tent.obj", "--format", "json"]));
+    assert_eq!(imported["world"]["edges"], 6);
+    assert_documented(folder.path(), &["world", "import"], &imported);
+}
+
+#[test]
 fn a_run_repeats_byte_for_byte_and_each_trial_replays() {
     let folder = folder();
     let path = folder.path();
@@ -170,6 +201,9 @@ fn a_run_repeats_byte_for_byte_and_each_trial_replays() {
     };
     let (first, second) = (run("1"), run("2"));
     assert_ne!(first["folder"], second["folder"]);
+    for verb in ["demo", "run", "report"] {
+        assert_documented(path, &[verb], &first);
+    }
     assert_eq!(first["summary"], second["summary"]);
     let trials = |run: &serde_json::Value| {
         let folder = path.join(run["folder"].as_str().expect("a path"));

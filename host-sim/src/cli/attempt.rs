@@ -9,6 +9,14 @@ use miette::{IntoDiagnostic, Result, WrapErr};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
+/// The fields that `--format json` prints for an attempt, for the help.
+pub(super) const JSON_FIELDS: &str = "\
+record = the trial's line of trials.csv (row, trial, map = draw of the map's noise, true_x_m, true_y_m, \
+true_heading_deg, nearest_node, second_nearest_node, nearest_node_distance_m, outcome, answered_node, is_success, looks, \
+scene_segments, leader_score, runner_up_score, truth_score); answer_distance_m from the true position to the answered \
+node; looks (look, heading_deg, seen_segments, used_segments, decision in words, and nodes, of each its score, \
+was_candidate and is_candidate: before and after the look); drawings, the files";
+
 /// One attempt, as `--format json` prints it.
 #[derive(Debug, Serialize)]
 pub(super) struct Attempt {

@@ -1,7 +1,7 @@
 //! `demo`: what `cargo run --release` does.
 
 use super::console::{self, Format};
-use super::run::RunPrinted;
+use super::run::{JSON_FIELDS, RunPrinted};
 use super::scenario_args::ScenarioChanges;
 use super::summary_table;
 use super::trials::{self, RunArguments, name};
@@ -10,9 +10,10 @@ use miette::Result;
 
 /// Learn the bundled office and put a robot down in it 2000 times: the paper's localiser beside the paper's figure.
 #[derive(Debug, Default, Args)]
-#[command(
-    after_help = "Examples:\n  edgeloc demo\n  edgeloc demo --trials 900 --threads 4\n  edgeloc demo --seed 2 --format json"
-)]
+#[command(after_help = format!(
+    "Examples:\n  edgeloc demo\n  edgeloc demo --trials 900 --threads 4\n  edgeloc demo --seed 2 --format json\n\n\
+     JSON (--format json): {JSON_FIELDS}."
+))]
 pub(super) struct Demo {
     #[command(flatten)]
     changes: ScenarioChanges,

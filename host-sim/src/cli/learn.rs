@@ -1,7 +1,7 @@
 //! `learn`: a world becomes a map, the file that goes into a robot's flash.
 
 use super::console::{self, Format};
-use super::map::MapDescription;
+use super::map::{JSON_FIELDS, MapDescription};
 use super::scenario_args::ScenarioArguments;
 use super::trials;
 use super::world::file_stem;
@@ -11,10 +11,13 @@ use std::path::PathBuf;
 
 /// Learn a world: place nodes, look around from each through the uncertainty sources, write the map (.edgemap).
 ///
-/// The map is the topological database that the on-robot library opens in place, byte for byte.
+/// The map is the topological database that the on-robot library opens in place: put the file byte for byte into the
+/// robot's flash (include_bytes! in its firmware, or a region of its own) and give these bytes to
+/// TopologicalDatabase::open. Nothing is unpacked or copied.
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  edgeloc learn\n  edgeloc learn --world small_house.edgeworld --nodes 40\n  \
-                        edgeloc learn my.toml --noise-draw 3 -o flash.edgemap")]
+#[command(after_help = format!("Examples:\n  edgeloc learn\n  edgeloc learn --world small_house.edgeworld --nodes 40\n  \
+                        edgeloc learn my.toml --noise-draw 3 -o flash.edgemap\n\n\
+                        JSON (--format json): {JSON_FIELDS}."))]
 pub(super) struct Learn {
     #[command(flatten)]
     scenario: ScenarioArguments,

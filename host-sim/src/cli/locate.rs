@@ -1,6 +1,6 @@
 //! `locate`: one attempt, explained.
 
-use super::attempt::Attempt;
+use super::attempt::{Attempt, JSON_FIELDS};
 use super::console::Format;
 use super::scenario_args::{ScenarioArguments, find_row};
 use super::trials;
@@ -13,10 +13,9 @@ use std::path::PathBuf;
 
 /// Put the robot down once and explain, look by look, how it finds out where it is; one drawing a look.
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  edgeloc locate\n  edgeloc locate --row 'anywhere, no polarity' --trial 3\n  \
+#[command(after_help = format!("Examples:\n  edgeloc locate\n  edgeloc locate --row 'anywhere, no polarity' --trial 3\n  \
                         edgeloc locate --world small_house.edgeworld --at 2.5,-1 --heading-deg 90\n\n\
-                        JSON (--format json): record = the trial's line of trials.csv, answer_distance_m, looks with \
-                        heading_deg, segments, decision and every node's score, drawings.")]
+                        JSON (--format json): {JSON_FIELDS}."))]
 pub(super) struct Locate {
     #[command(flatten)]
     scenario: ScenarioArguments,

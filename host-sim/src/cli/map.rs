@@ -26,13 +26,17 @@ impl Map {
     }
 }
 
+/// The fields that `--format json` prints for a map, for the help.
+pub(super) const JSON_FIELDS: &str = "\
+file, size_bytes, nodes, views_per_node, segments, segments_per_node_min, segments_per_node_median, \
+segments_per_node_max, rig (as in a scenario: width_px, height_px, focal_length_px, principal_point_x_px, principal_point_y_px, baseline_m, camera_height_m, near_limit_m, nearest_model_m, farthest_model_m), positions (node, x_m, y_m, segments)";
+
 /// Check a map (checksum, bounds) and describe it: nodes, segments, rig, size.
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Examples:\n  edgeloc map info office-1.edgemap\n  edgeloc map info office-1.edgemap --format json\n\n\
-                        JSON (--format json): file, size_bytes, nodes, views_per_node, segments, \
-                        segments_per_node_min/median/max, rig (lengths in m and px), positions (node, x_m, y_m, segments)."
-)]
+#[command(after_help = format!(
+    "Examples:\n  edgeloc map info office-1.edgemap\n  edgeloc map info office-1.edgemap --format json\n\n\
+                        JSON (--format json): {JSON_FIELDS}."
+))]
 pub(super) struct Info {
     /// Map file (.edgemap).
     file: PathBuf,

@@ -1,6 +1,6 @@
 //! `replay`: one trial of a finished run again, explained and compared with what the run recorded.
 
-use super::attempt::Attempt;
+use super::attempt::{Attempt, JSON_FIELDS};
 use super::console::{self, Format};
 use super::report::{open, world_of};
 use super::scenario_args::find_row;
@@ -12,8 +12,9 @@ use std::path::PathBuf;
 
 /// Replay one trial of a finished run, explained look by look; fails when it does not come out as recorded.
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  edgeloc replay runs/latest --trial 17\n  \
-                        edgeloc replay runs/2026-01-31-paper --row 'anywhere, polarity' --trial 3")]
+#[command(after_help = format!("Examples:\n  edgeloc replay runs/latest --trial 17\n  \
+                        edgeloc replay runs/2026-01-31-paper --row 'anywhere, polarity' --trial 3\n\n\
+                        JSON (--format json): {JSON_FIELDS}."))]
 pub(super) struct Replay {
     /// Folder of the run.
     run: PathBuf,

@@ -1,7 +1,7 @@
 //! `report`: the figures and the page of a finished run.
 
 use super::console::{self, Format};
-use super::run::RunPrinted;
+use super::run::{JSON_FIELDS, RunPrinted};
 use super::scenario_args::find_row;
 use super::trials::name;
 use super::{summary_table, worlds};
@@ -14,10 +14,11 @@ use std::path::PathBuf;
 
 /// Print the figures of a finished run and write its report.html anew.
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Examples:\n  edgeloc report runs/latest\n  edgeloc report runs/2026-01-31-paper --format json\n  \
-                  edgeloc report runs/latest --plan plan.svg --row 'near, polarity'"
-)]
+#[command(after_help = format!(
+    "Examples:\n  edgeloc report runs/latest\n  edgeloc report runs/2026-01-31-paper --format json\n  \
+                  edgeloc report runs/latest --plan plan.svg --row 'near, polarity'\n\n\
+     JSON (--format json): {JSON_FIELDS}."
+))]
 pub(super) struct Report {
     /// Folder of the run.
     run: PathBuf,

@@ -10,18 +10,24 @@ use miette::Result;
 use serde::Serialize;
 use std::path::Path;
 
+/// The fields that `--format json` prints for a run, for the help.
+pub(super) const JSON_FIELDS: &str = "\
+folder, and summary = what summary.json holds (rates are fractions of 1): scenario, nodes, map (mean_bytes, \
+mean_segments_per_node, free_m2_per_node), chance_rate, paper_rate, paper_interval (low, high), rows. Each of the rows: \
+row, start, polarity, trials, successes, success_rate (null without trials) with its 95 % Wilson interval success_rate_low \
+to success_rate_high, unknown (can't tell) and errors in trials, mean_looks, median_looks, mean_segments_per_look, \
+mean_nearest_node_distance_m, median_answer_distance_m (null without answers)";
+
 /// Run the kidnapped-robot trials of a scenario; the results go to a folder of their own.
 ///
 /// The folder, runs/<date>-<scenario>, holds the manifest, the whole scenario, trials.csv (no wall times in it: the same
 /// scenario gives the same bytes), nodes.csv, summary.json, timings.json, look_times.csv and report.html.
 /// runs/latest points at the newest.
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  edgeloc run smoke\n  edgeloc run paper --trials 900\n  \
+#[command(after_help = format!("Examples:\n  edgeloc run smoke\n  edgeloc run paper --trials 900\n  \
                         edgeloc run my.toml --world small_house.edgeworld --set localizer.turn_deg=60\n  \
                         edgeloc run paper --print-config > my.toml\n\n\
-                        JSON (--format json): folder, and summary = what summary.json holds: rates are fractions of 1, \
-                        lengths in m, per row trials, successes, success_rate with its 95 % Wilson interval \
-                        (success_rate_low, success_rate_high), looks, segments, unknown and errors.")]
+                        JSON (--format json): {JSON_FIELDS}."))]
 pub(super) struct Run {
     #[command(flatten)]
     scenario: ScenarioArguments,
