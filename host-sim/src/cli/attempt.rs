@@ -83,7 +83,8 @@ impl Attempt {
             _ => "no answer".to_owned(),
         };
         let verdict = if record.is_success { "right" } else { "wrong" };
-        console::print(&format!("answer after {} looks: {answer}: {verdict}", record.looks))?;
+        let looks = if record.looks == 1 { "look" } else { "looks" };
+        console::print(&format!("answer after {} {looks}: {answer}: {verdict}", record.looks))?;
         match (self.drawings.first(), self.drawings.last()) {
             (Some(first), Some(last)) if first != last => {
                 console::print(&format!("drawings: {} to {}", first.display(), last.display()))
