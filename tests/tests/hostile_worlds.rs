@@ -310,3 +310,36 @@ fn a_file_with_a_million_faults_names_a_hundred_and_counts_the_rest() {
     assert_eq!(report.problems.len(), ImportReport::MAX_PROBLEMS);
     assert!(report.unlisted_problem_count > 0);
 }
+
+#[test]
+fn a_face_of_countless_corners_is_left_out_and_named() {
+    let site = Site::new();
+    let corners = |zero: &str| format!(" {zero}").repeat(400_000);
+    let obj = format!("v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\nf{}\n", corners("1"));
+    let collada = |primitive: &str| {
+        format!(
+            "<COLLADA><library_geometries><geometry id='g'><mesh><source id='s'>\
+             <float_array>0 0 0 1 0 0 1 1 0</float_array>\
+             <technique_common><accessor stride='3'/></technique_common></source>\
+             <vertices id='v'><input semantic='POSITION' source='#s'/></vertices>\
+             <triangles><input semantic='VERTEX' source='#v' offset='0'/><p>0 1 2</p></triangles>{primitive}\
+             </mesh></geometry></library_geometries><library_visual_scenes><visual_scene id='e'>\
+             <node><instance_geometry url='#g'/></node></visual_scene></library_visual_scenes></COLLADA>"
+        )
+    };
+    let input = "<input semantic='VERTEX' source='#v' offset='0'/>";
+    let indices = corners("0");
+    let polylist = collada(&format!("<polylist>{input}<vcount>400000</vcount><p>{indices}</p></polylist>"));
+    let polygons = collada(&format!("<polygons>{input}<p>{indices}</p></polygons>"));
+    for (name, content) in [("a.obj", obj), ("a.dae", polylist), ("b.dae", polygons)] {
+        let path = site.write(name, content);
+        let begun = Instant::now();
+        let (world, report) = import(&path, &ImportOptions::default()).expect("one triangle is sound");
+        assert!(begun.elapsed() < Duration::from_secs(2), "{name} took {:?}", begun.elapsed());
+        assert_eq!(world.surfaces.triangles.len(), 1, "{name}");
+        let [problem] = &report.problems[..] else { panic!("{name}: {:?}", report.problems) };
+        let said = problem.to_string();
+        let is_named = said.contains("10000") && said.contains(name) && said.contains("split");
+        assert!(is_named, "{said}");
+    }
+}

@@ -5,7 +5,7 @@
 //! triangle, and names no line.)
 
 use super::library::{FoundFile, Library};
-use super::polygon::triangulate;
+use super::polygon::{MAX_CORNERS, triangulate};
 use super::session::{MAX_TRIANGLES, MeshFile};
 use super::{ImportProblem, ImportReport, luminance};
 use crate::world::mesh::{MID_GREY, Triangle};
@@ -98,6 +98,11 @@ impl Reader<'_> {
     }
 
     fn face(&mut self, line_number: usize, words: &[&str]) {
+        if words.len() > MAX_CORNERS {
+            let what = format!("a face of {} corners, more than {MAX_CORNERS}, is left out", words.len());
+            self.name(line_number, what, "split it into triangles on export");
+            return;
+        }
         let Some(corners) = self.indices(words).filter(|corners| corners.len() >= 3) else {
             self.name(line_number, "a face without three known vertices is left out".to_owned(), "correct the line");
             return;

@@ -6,6 +6,9 @@ use nalgebra::Vector3;
 /// corner count at worst, its square as a rule.
 const BUDGET_PER_CORNER: usize = 2000;
 
+/// Most corners of a polygon that the readers take; a hundred times those of a finely round table top.
+pub(super) const MAX_CORNERS: usize = 10_000;
+
 /// Triangles of the polygon with the given corners, as indices into `corners`, wound like the polygon.
 ///
 /// Exact for simple polygons, convex or not. A polygon that crosses itself gives triangles with the same corners.
@@ -27,8 +30,15 @@ pub(super) fn triangulate(corners: &[Vector3<f64>]) -> Vec<[usize; 3]> {
         let at = ear.unwrap_or(1);
         triangles.push(around(&left, at));
         left.remove(at);
+        if budget == 0 {
+            break;
+        }
     }
-    triangles.push([left[0], left[1], left[2]]);
+    // The last triangle; or, once the budget is spent, all that is left as a fan from its last corner.
+    let (&hub, rest) = left.split_last().expect("three corners are never cut off");
+    triangles.extend(rest.windows(2).map(|side| [hub, side[0], side[1]]));
+    let last = triangles.last_mut().expect("there is at least one triangle");
+    last.rotate_left(1);
     triangles
 }
 
@@ -92,6 +102,15 @@ mod tests {
         let signs: Vec<f64> = areas(&outline).iter().map(|area| area.signum()).collect();
         assert_eq!(signs.len(), 1000);
         assert!(signs.iter().all(|sign| sign * signs[0] > 0.0));
+    }
+
+    #[test]
+    fn a_polygon_too_large_to_search_is_cut_all_the_same() {
+        let round = |corner: u32| 1e-3 * f64::from(corner * corner);
+        let outline: Vec<(f64, f64)> = (0..8000).map(|corner| (f64::from(corner), round(corner))).collect();
+        let areas = areas(&flat(&outline));
+        assert_eq!(areas.len(), 7998);
+        assert!(areas.iter().all(|&area| area > 0.0));
     }
 
     #[test]

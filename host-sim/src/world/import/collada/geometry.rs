@@ -1,7 +1,7 @@
 //! One `<geometry>` of a Collada file: its positions and the primitives that index them.
 
 use super::ById;
-use crate::world::import::polygon::triangulate;
+use crate::world::import::polygon::{MAX_CORNERS, triangulate};
 use crate::world::import::session::MAX_TRIANGLES;
 use crate::world::import::topology::Topology;
 use crate::world::import::xml::{Problems, child, children, text};
@@ -38,7 +38,14 @@ pub(super) fn read<'a>(
         );
         return None;
     };
-    let mut reader = Reader { by_id, sources, positions: HashMap::new(), geometry: Geometry::default(), bad_count: 0 };
+    let mut reader = Reader {
+        by_id,
+        sources,
+        positions: HashMap::new(),
+        geometry: Geometry::default(),
+        bad_count: 0,
+        huge_count: 0,
+    };
     for part in children(mesh) {
         let name = part.tag_name().name();
         match name {
@@ -71,6 +78,10 @@ pub(super) fn read<'a>(
             format!("{} faces or lines left out: an index is missing, not a number or out of range", reader.bad_count);
         problems.add(element, what, "export the file again; it may be damaged");
     }
+    if reader.huge_count > 0 {
+        let what = format!("{} faces of more than {MAX_CORNERS} corners are left out", reader.huge_count);
+        problems.add(element, what, "split them into triangles on export");
+    }
     Some(reader.geometry)
 }
 
@@ -81,6 +92,8 @@ struct Reader<'r, 'a> {
     positions: HashMap<String, (u32, u32)>,
     geometry: Geometry,
     bad_count: usize,
+    /// Faces of more than [`MAX_CORNERS`].
+    huge_count: usize,
 }
 
 /// How the numbers of a `<p>` lead to vertices.
@@ -146,6 +159,10 @@ impl<'a> Reader<'_, 'a> {
     fn polygon(&mut self, corners: &[Option<u32>], symbol: usize) {
         if let &[a, b, c] = corners {
             return self.triangle([a, b, c], symbol);
+        }
+        if corners.len() > MAX_CORNERS {
+            self.huge_count += 1;
+            return;
         }
         let known: Option<Vec<u32>> = corners.iter().copied().collect();
         let Some(known) = known.filter(|known| known.len() >= 3) else {
