@@ -1,6 +1,7 @@
 //! Which cells of a grid on the floor lie below or above a set of triangles, cut to a slab of heights.
 
 use edgeloc::geometry::Point2;
+use std::ops::RangeInclusive;
 
 /// Square cells over the floor.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,6 +39,21 @@ impl Grid {
     pub(super) const fn is_on_border(&self, cell: usize) -> bool {
         let (x, y) = (cell % self.width, cell / self.width);
         x == 0 || y == 0 || x + 1 == self.width || y + 1 == self.height
+    }
+
+    /// The rows from one y to another \[m\].
+    pub(super) fn rows(&self, south: f64, north: f64) -> RangeInclusive<usize> {
+        let row = |y: f64| self.index(y - self.south, self.height);
+        row(south)..=row(north)
+    }
+
+    /// The column at an x \[m\], the outermost one beyond the grid.
+    fn column(&self, x: f64) -> usize {
+        self.index(x - self.west, self.width)
+    }
+
+    fn index(&self, along_m: f64, count: usize) -> usize {
+        libm::floor(along_m / self.cell_m).clamp(0.0, count as f64 - 1.0) as usize
     }
 
     /// The cells that share a side with a cell.
@@ -80,17 +96,14 @@ impl<'a> Coverage<'a> {
         polygon.cut(2, slab.low, slab.high);
         let Some((south, north)) = polygon.extent(1) else { return };
         let grid = self.grid;
-        let index_of = |at: f64, low: f64, count: usize| {
-            libm::floor((at - low) / grid.cell_m).clamp(0.0, count as f64 - 1.0) as usize
-        };
-        for row in index_of(south, grid.south, grid.height)..=index_of(north, grid.south, grid.height) {
+        for row in grid.rows(south, north) {
             let low = grid.south + row as f64 * grid.cell_m;
             let mut strip = polygon;
             strip.cut(1, low, low + grid.cell_m);
             if let Some((west, east)) = strip.extent(0) {
                 let first = row * (grid.width + 1);
-                self.changes[first + index_of(west, grid.west, grid.width)] += 1;
-                self.changes[first + index_of(east, grid.west, grid.width) + 1] -= 1;
+                self.changes[first + grid.column(west)] += 1;
+                self.changes[first + grid.column(east) + 1] -= 1;
             }
         }
     }

@@ -22,6 +22,10 @@ use indoor::{IndoorRule, OUTSIDE_BALL_M, indoor_regions, triangles};
 /// The most cells a grid may have, about 100 m by 100 m at 5 cm: bounds the memory that a world file can ask for.
 const MAX_CELL_COUNT: f64 = 4e6;
 
+/// The most rows of cells that all triangles together may reach over, each counted for itself: each costs a step in
+/// each of three passes, together a few seconds. A furnished flat of 100,000 triangles needs 200,000.
+const MAX_ROW_STEPS: usize = 50_000_000;
+
 /// In place of a number, for a cell that is not free.
 const NOT_FREE: u32 = u32::MAX;
 
@@ -72,6 +76,7 @@ impl FreeSpace {
     pub fn of(world: &WireframeWorld, options: &FreeSpaceOptions) -> Result<Self, FreeSpaceError> {
         check(options)?;
         let grid = grid_over(&world.surfaces, options)?;
+        check_row_steps(&world.surfaces, &grid)?;
         let (rule, mut regions) = indoor_regions(&world.surfaces, &grid, options);
         if regions.is_empty() {
             return Err(FreeSpaceError::NoRoom { world: world.name.clone(), robot_radius_m: options.robot_radius_m });
@@ -235,6 +240,20 @@ fn grid_over(surfaces: &Surfaces, options: &FreeSpaceOptions) -> Result<Grid, Fr
     Ok(Grid { west: low[0] - border, south: low[1] - border, cell_m, width: width as usize, height: height as usize })
 }
 
+/// Refuses surfaces that would take too long to lay on the grid.
+fn check_row_steps(surfaces: &Surfaces, grid: &Grid) -> Result<(), FreeSpaceError> {
+    let row_count = |corners: [[f64; 3]; 3]| {
+        let [a, b, c] = corners.map(|corner| corner[1]);
+        let rows = grid.rows(a.min(b).min(c), a.max(b).max(c));
+        rows.end() + 1 - rows.start()
+    };
+    let row_steps = triangles(surfaces).map(row_count).fold(0, usize::saturating_add);
+    if row_steps > MAX_ROW_STEPS {
+        return Err(FreeSpaceError::TooManyLargeTriangles { row_steps, max_row_steps: MAX_ROW_STEPS });
+    }
+    Ok(())
+}
+
 /// Why a world has no free space.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FreeSpaceError {
@@ -264,6 +283,17 @@ pub enum FreeSpaceError {
         /// The most cells there may be.
         max_cell_count: usize,
     },
+    /// Laying the triangles on the grid would take too long.
+    #[error(
+        "the world's triangles reach over {row_steps} rows of cells, added up, more than {max_row_steps}; leave out \
+         large surfaces of many triangles, such as terrain, simplify the meshes, or ask for larger cells"
+    )]
+    TooManyLargeTriangles {
+        /// Rows, added up over the triangles.
+        row_steps: usize,
+        /// The most there may be.
+        max_row_steps: usize,
+    },
     /// Nothing is indoors and free.
     #[error(
         "the world {world:?} has no indoor place for a robot of {robot_radius_m} m radius: nothing is walled in or \
@@ -279,122 +309,4 @@ pub enum FreeSpaceError {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::world::template::{Placement, Template};
-
-    /// A room of 4 m x 3 m from the origin, with walls 0.1 m thick, and a hole of the given width in its east wall.
-    fn room(hole_m: f32, build: impl FnOnce(&mut Template)) -> WireframeWorld {
-        let mut room = Template::new("room");
-        for z in [0.0, 2.5] {
-            room.add_surface([[-0.1, -0.1, z], [4.1, -0.1, z], [4.1, 3.1, z], [-0.1, 3.1, z]]);
-        }
-        room.add_solid([-0.1, -0.1, 0.0], [4.1, 0.0, 2.5]);
-        room.add_solid([-0.1, 3.0, 0.0], [4.1, 3.1, 2.5]);
-        room.add_solid([-0.1, 0.0, 0.0], [0.0, 3.0, 2.5]);
-        room.add_solid([4.0, 0.0, 0.0], [4.1, 1.5 - 0.5 * hole_m, 2.5]);
-        room.add_solid([4.0, 1.5 + 0.5 * hole_m, 0.0], [4.1, 3.0, 2.5]);
-        build(&mut room);
-        let mut world = WireframeWorld::default();
-        room.place(&Placement::at(0.0, 0.0, 0.0), &mut world);
-        world
-    }
-
-    fn free(world: &WireframeWorld) -> Result<FreeSpace, FreeSpaceError> {
-        FreeSpace::of(world, &FreeSpaceOptions::default())
-    }
-
-    #[test]
-    fn a_bare_room_is_free_but_for_the_robots_radius_at_the_walls() {
-        let space = free(&room(0.0, |_| {})).expect("a room");
-        // 3.5 m x 2.5 m, less up to a cell on each side.
-        assert!((8.1..=8.75).contains(&space.area_m2()), "{}", space.describe());
-        assert!(space.contains(Point2::new(2.0, 1.5)) && space.contains(Point2::new(0.35, 0.35)));
-        for outside in [(0.2, 1.5), (-0.5, 1.5), (5.0, 1.5), (f32::NAN, 1.5), (1e30, 1.5)] {
-            assert!(!space.contains(Point2::new(outside.0, outside.1)), "{outside:?}");
-        }
-    }
-
-    #[test]
-    fn no_surface_within_the_slice_comes_nearer_than_the_radius() {
-        let table = [[1.0, 1.0, 0.7], [2.0, 1.8, 0.75]];
-        let space = free(&room(0.0, |room| room.add_solid(table[0], table[1]))).expect("a room");
-        for center in space.cell_centers() {
-            let to_table = center.distance(Point2::new(center.x.clamp(1.0, 2.0), center.y.clamp(1.0, 1.8)));
-            let to_wall = center.x.min(4.0 - center.x).min(center.y).min(3.0 - center.y);
-            assert!(to_table.min(to_wall) >= 0.25 - 1e-4, "{center:?}");
-        }
-        assert!(!space.contains(Point2::new(1.5, 1.4)));
-    }
-
-    #[test]
-    fn carpets_and_lamps_are_no_obstacles() {
-        let bare = free(&room(0.0, |_| {})).expect("a room").area_m2();
-        let furnished = room(0.0, |room| {
-            room.add_solid([1.0, 1.0, 0.0], [2.0, 2.0, 0.02]);
-            room.add_solid([1.0, 1.0, 2.2], [2.0, 2.0, 2.4]);
-        });
-        assert!((free(&furnished).expect("a room").area_m2() - bare).abs() < 1e-9);
-    }
-
-    #[test]
-    fn an_open_door_does_not_let_the_outside_in() {
-        let mut doorway = room(0.9, |_| {});
-        let mut without_floor = doorway.clone();
-        without_floor.surfaces.triangles.retain(|corners| {
-            let [a, b, c] = corners.map(|corner| doorway.surfaces.vertices[corner as usize].z);
-            a.max(b).max(c) - a.min(b).min(c) > 0.1
-        });
-        doorway.surfaces.triangles.reverse();
-        for world in [doorway, without_floor] {
-            let space = free(&world).expect("a room");
-            assert!((8.0..9.5).contains(&space.area_m2()), "{}", space.describe());
-            assert!(space.contains(Point2::new(2.0, 1.5)) && !space.contains(Point2::new(4.6, 1.5)));
-        }
-    }
-
-    #[test]
-    fn a_room_open_on_one_side_is_found_by_its_floor_and_ceiling() {
-        let space = free(&room(3.0, |_| {})).expect("a room");
-        assert!(space.area_m2() > 8.0 && space.describe().contains("between a floor and a ceiling"));
-        assert!(!space.contains(Point2::new(4.5, 1.5)));
-    }
-
-    #[test]
-    fn the_smaller_of_two_rooms_is_left_out_and_stated() {
-        let world = room(0.0, |room| room.add_solid([2.5, 0.0, 0.0], [2.6, 3.0, 2.5]));
-        let space = free(&world).expect("a room");
-        assert_eq!(space.other_region_count(), 1);
-        assert!(space.contains(Point2::new(1.0, 1.5)) && !space.contains(Point2::new(3.3, 1.5)));
-        assert!((1.9..2.3).contains(&space.other_regions_m2()), "{}", space.describe());
-    }
-
-    #[test]
-    fn samples_fill_the_free_cells_evenly() {
-        let space = free(&room(0.0, |_| {})).expect("a room");
-        let mut stream = Stream::new(1, "test", 0, 0);
-        let samples: Vec<Point2> = (0..20_000).map(|_| space.sample(&mut stream)).collect();
-        assert!(samples.iter().all(|&sample| space.contains(sample)));
-        let west = samples.iter().filter(|sample| sample.x < 2.0).count();
-        assert!((9_700..10_300).contains(&west), "{west}");
-    }
-
-    #[test]
-    fn worlds_without_room_or_of_absurd_size_are_refused_with_a_remedy() {
-        let error = |world: &WireframeWorld| free(world).expect_err("no room").to_string();
-        assert!(error(&WireframeWorld::default()).contains("no surfaces"));
-        let narrow = room(0.0, |room| {
-            for x in [0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5] {
-                room.add_solid([x, 0.0, 0.0], [x + 0.1, 3.0, 2.5]);
-            }
-        });
-        assert!(error(&narrow).contains("smaller robot"));
-        let mut far = room(0.0, |_| {});
-        far.surfaces.vertices[0].x = -3e30;
-        assert!(error(&far).contains("larger cells"));
-        far.surfaces.vertices[0].x = f32::NAN;
-        assert!(free(&far).is_ok());
-        let coarse = FreeSpaceOptions { cell_m: 0.0, ..FreeSpaceOptions::default() };
-        assert!(FreeSpace::of(&far, &coarse).expect_err("bad").to_string().contains("cell size"));
-    }
-}
+mod tests;
