@@ -14,6 +14,6 @@ mod visibility;
 mod wireframe;
 
 pub use free_space::{FreeSpace, FreeSpaceError, FreeSpaceOptions};
-pub use occlusion::{Occluders, SAME_PLANE_M, STOP_SHORT_M};
+pub use occlusion::Occluders;
 pub use visibility::ViewpointVisibility;
 pub use wireframe::{Surfaces, WireframeWorld};

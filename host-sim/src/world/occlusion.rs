@@ -14,10 +14,10 @@ use super::Surfaces;
 use edgeloc::geometry::Point3;
 
 /// A ray ends this much before the point looked at \[m\].
-pub const STOP_SHORT_M: f32 = 0.012;
+const STOP_SHORT_M: f32 = 0.012;
 
 /// A point this near to the plane of a triangle is not hidden by it \[m\].
-pub const SAME_PLANE_M: f32 = 0.001;
+const SAME_PLANE_M: f32 = 0.001;
 
 /// Triangles reach this fraction of their sides beyond their border, so that no ray slips between neighbours.
 const SEAM: f32 = 2e-6;
@@ -56,7 +56,7 @@ impl Occluders {
         Self { nodes: builder.nodes, triangles: builder.triangles }
     }
 
-    /// Whether nothing stands between the eye at `from` and the point `to`, the last [`STOP_SHORT_M`] excepted.
+    /// Whether nothing stands between the eye at `from` and the point `to`, the last 12 mm excepted.
     #[must_use]
     pub fn is_visible(&self, from: Point3, to: Point3) -> bool {
         self.blocker(from, to, Blocker::default()).is_none()

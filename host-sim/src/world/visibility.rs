@@ -60,12 +60,6 @@ impl<'a> ViewpointVisibility<'a> {
         self.edges
     }
 
-    /// How many edges the world has.
-    #[must_use]
-    pub const fn edge_count(&self) -> usize {
-        self.edges.len()
-    }
-
     /// The pieces of one edge that are seen, from its start to its end, in the world frame; none when it is hidden.
     ///
     /// # Panics

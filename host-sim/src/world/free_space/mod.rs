@@ -117,18 +117,6 @@ impl FreeSpace {
         Point2::new(beside(center.x), beside(center.y))
     }
 
-    /// Cells from west to east.
-    #[must_use]
-    pub const fn width(&self) -> usize {
-        self.grid.width
-    }
-
-    /// Cells from south to north.
-    #[must_use]
-    pub const fn height(&self) -> usize {
-        self.grid.height
-    }
-
     /// South-west corner of the grid \[m\].
     #[must_use]
     pub fn origin(&self) -> Point2 {
@@ -139,18 +127,6 @@ impl FreeSpace {
     #[must_use]
     pub const fn cell_m(&self) -> f32 {
         self.options.cell_m
-    }
-
-    /// The options it was found with.
-    #[must_use]
-    pub const fn options(&self) -> &FreeSpaceOptions {
-        &self.options
-    }
-
-    /// Whether the cell `ix` from the west and `iy` from the south is free; cells outside of the grid are not.
-    #[must_use]
-    pub fn is_free(&self, ix: usize, iy: usize) -> bool {
-        ix < self.grid.width && iy < self.grid.height && self.numbers[iy * self.grid.width + ix] != NOT_FREE
     }
 
     /// Indoor regions that were left out because they are not connected to this one.
