@@ -25,7 +25,7 @@ const SEAM: f32 = 2e-6;
 /// Boxes are larger than what they hold by this much \[m\], so that rounding never loses a hit.
 const BOX_MARGIN_M: f32 = 1e-4;
 
-/// Most triangles in a leaf, except where all centres coincide.
+/// Most triangles in a leaf, except where the centres of different ones coincide.
 const LEAF_TRIANGLES: usize = 3;
 
 /// Candidate split planes along the longest side of a node.
@@ -185,6 +185,11 @@ impl RayTriangle {
         t > 0.0 && t < ray.reach && (1.0 - t) * determinant.abs() > self.same_plane
     }
 
+    /// Tells triangles apart, and puts them in some order.
+    fn bits(&self) -> [[u32; 3]; 3] {
+        [self.corner, self.sides[0], self.sides[1]].map(|vector| vector.map(f32::to_bits))
+    }
+
     fn bounds(&self) -> Bounds {
         let mut bounds = Bounds::EMPTY;
         for axis in 0..3 {
@@ -276,7 +281,10 @@ impl Builder {
         if to - from <= LEAF_TRIANGLES {
             return;
         }
-        let Some(middle) = self.partition(from, to, depth) else { return };
+        let Some(middle) = self.partition(from, to, depth) else {
+            self.nodes[node].triangle_count = distinct_to_front(&mut self.triangles[from..to]) as u32;
+            return;
+        };
         let left = self.nodes.len();
         self.nodes.extend([BoxNode::default(); 2]);
         self.nodes[node].first = left as u32;
@@ -340,6 +348,19 @@ fn stable_partition(run: &mut [RayTriangle], is_left: impl Fn(&RayTriangle) -> b
     middle
 }
 
+/// Moves one of each of the triangles to the front, and tells how many: a copy hides nothing that the other does not.
+fn distinct_to_front(run: &mut [RayTriangle]) -> usize {
+    run.sort_by_key(RayTriangle::bits);
+    let mut count = 0;
+    for index in 0..run.len() {
+        if count == 0 || run[index].bits() != run[count - 1].bits() {
+            run[count] = run[index];
+            count += 1;
+        }
+    }
+    count
+}
+
 fn array(point: Point3) -> [f32; 3] {
     [point.x, point.y, point.z]
 }
@@ -355,3 +376,6 @@ fn cross(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
 fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
+
+#[cfg(test)]
+mod tests;
