@@ -22,7 +22,7 @@ was_candidate and is_candidate: before and after the look); drawings, the files"
 pub(super) struct Attempt {
     /// The trial's line of trials.csv.
     pub(super) record: TrialRecord,
-    /// Distance from the true position to the answered node \[m\].
+    /// Distance from the true position to the answered node [m].
     answer_distance_m: Option<f64>,
     /// What happened, look by look.
     looks: Vec<LookExplanation>,

@@ -14,7 +14,7 @@ use std::path::PathBuf;
 /// Put the robot down once and explain, look by look, how it finds out where it is; one drawing a look.
 #[derive(Debug, Args)]
 #[command(after_help = format!("Examples:\n  edgeloc locate\n  edgeloc locate --row 'anywhere, no polarity' --trial 3\n  \
-                        edgeloc locate --world small_house.edgeworld --at 2.5,-1 --heading-deg 90\n\n\
+                        edgeloc locate --world small_house.edgeworld --at 5,-2 --heading-deg 90\n\n\
                         JSON (--format json): {JSON_FIELDS}."))]
 pub(super) struct Locate {
     #[command(flatten)]
@@ -25,10 +25,10 @@ pub(super) struct Locate {
     /// Trial: which start is drawn, and which noise.
     #[arg(long, value_name = "I", default_value_t = 0)]
     trial: u32,
-    /// Put the robot here \[m\] instead of at the trial's start.
+    /// Put the robot here [m] instead of at the trial's start.
     #[arg(long, value_name = "X,Y", value_parser = parse_place, allow_hyphen_values = true)]
     at: Option<Point2>,
-    /// With --at: the heading at the first look \[degrees\], counter-clockwise from +x.
+    /// With --at: the heading at the first look [degrees], counter-clockwise from +x.
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0, requires = "at", allow_hyphen_values = true)]
     heading_deg: f32,
     /// Folder for the drawings [default: locate-<scenario>-<trial>]; drawings of the same name are overwritten.

@@ -9,7 +9,7 @@ use serde::Serialize;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// Longest map read \[bytes\].
+/// Longest map read [bytes].
 const MAX_MAP_BYTES: u64 = 1 << 30;
 
 /// Describe maps.
