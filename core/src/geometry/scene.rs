@@ -88,3 +88,20 @@ impl fmt::Display for CapacityError {
 }
 
 impl core::error::Error for CapacityError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Point2, Polarity};
+
+    #[test]
+    fn a_scene_too_large_for_its_buffer_says_how_many_are_needed_and_changes_nothing() {
+        let segment = Segment2::new(Point2::new(0.0, 0.0), Point2::new(0.0, 9.0), Polarity::LeftBrighter);
+        let segments = [segment.expect("valid"); 5];
+        let mut buffer = SceneBuffer::<3>::new();
+        buffer.replace(&segments[..2]).expect("two fit");
+        let error = buffer.replace(&segments).expect_err("five do not");
+        assert_eq!((error.capacity, error.needed), (3, 5));
+        assert_eq!(buffer.as_scene().segments().len(), 2);
+    }
+}

@@ -3,7 +3,7 @@
 //! In a scenario file each source is a table of its own; what is not said stays at the paper's default:
 //!
 //! ```toml
-//! [sources]
+//! [uncertainty]
 //! lateral_edge_shift = { enabled = true, magnitude = 3.0, is_common = true }
 //! edge_detection_loss = { magnitude = 0.3125 }
 //! stereo_match = { enabled = false }
