@@ -5,11 +5,11 @@
 //! totals uniformly. Left and right image draw their own gaps, so that a 3-D segment needs the edge in both. Remains
 //! below [`Segment2::MIN_LENGTH_PX`] vanish too, a share far below one per mille.
 
-use super::{SourceFacts, UncertaintySource};
+use super::setting::source;
+use super::{ActsIn, SourceFacts, UncertaintySource};
 use crate::camera::StereoObservation;
 use crate::random::Stream;
 use edgeloc::geometry::Segment2;
-use serde::{Deserialize, Serialize};
 
 const FACTS: SourceFacts = SourceFacts {
     key: "edge_detection_loss",
@@ -17,8 +17,10 @@ const FACTS: SourceFacts = SourceFacts {
     symbol: "psi_e",
     unit: "share of length",
     stream_id: 2,
+    is_enabled_by_default: true,
     default_magnitude: 0.1125,
     legal_range: (0.0, 0.3125),
+    acts_in: ActsIn::Both,
     cause: "blur and low contrast hide that share of each edge's length, in gaps",
     citation: "Tian et al., section 4.2, after Coupe 2009",
 };
@@ -29,35 +31,12 @@ const GAP_LENGTHS_PX: [f32; 2] = [50.0, 150.0];
 /// Most gaps in one piece.
 const MAX_GAPS: usize = 3;
 
-/// Cuts gaps into each piece; the magnitude is psi_e, the share of the length that goes.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct EdgeDetectionLoss {
-    /// Whether the source acts.
-    pub enabled: bool,
-    /// psi_e, a share of the length.
-    pub magnitude: f64,
-}
-
-impl Default for EdgeDetectionLoss {
-    fn default() -> Self {
-        Self { enabled: true, magnitude: FACTS.default_magnitude }
-    }
+source! {
+    /// Cuts gaps into each piece; the magnitude is psi_e, the share of the length that goes.
+    pub struct EdgeDetectionLoss: FACTS {}
 }
 
 impl UncertaintySource for EdgeDetectionLoss {
-    fn facts(&self) -> &'static SourceFacts {
-        &FACTS
-    }
-
-    fn is_enabled(&self) -> bool {
-        self.enabled
-    }
-
-    fn magnitude(&self) -> f64 {
-        self.magnitude
-    }
-
     fn apply(&self, observation: &mut StereoObservation, stream: &mut Stream) {
         if self.magnitude <= 0.0 {
             return;

@@ -5,12 +5,12 @@
 //! localiser leaves near-horizontal segments of its scene out by itself. A feature counts as near-horizontal when the
 //! line from the start of its first to the end of its last piece is, in either image.
 
-use super::{SourceFacts, UncertaintySource};
+use super::setting::source;
+use super::{ActsIn, SourceFacts, UncertaintySource};
 use crate::camera::StereoObservation;
 use crate::random::Stream;
 use edgeloc::geometry::Segment2;
 use edgeloc::math;
-use serde::{Deserialize, Serialize};
 
 const FACTS: SourceFacts = SourceFacts {
     key: "epipolar_removal",
@@ -18,41 +18,20 @@ const FACTS: SourceFacts = SourceFacts {
     symbol: "",
     unit: "degrees",
     stream_id: 4,
+    is_enabled_by_default: true,
     default_magnitude: 5.0,
     legal_range: (0.0, 45.0),
+    acts_in: ActsIn::Learning,
     cause: "the stereo matcher leaves out features nearer to the horizontal than that angle",
     citation: "Tian et al., section 4.2, after Crossley 2000",
 };
 
-/// Makes near-horizontal features unmatchable; the magnitude is the greatest angle left out, in degrees.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct EpipolarRemoval {
-    /// Whether the source acts.
-    pub enabled: bool,
-    /// Greatest angle to the horizontal that is left out, in degrees.
-    pub magnitude: f64,
-}
-
-impl Default for EpipolarRemoval {
-    fn default() -> Self {
-        Self { enabled: true, magnitude: FACTS.default_magnitude }
-    }
+source! {
+    /// Makes near-horizontal features unmatchable; the magnitude is the greatest angle left out, in degrees.
+    pub struct EpipolarRemoval: FACTS {}
 }
 
 impl UncertaintySource for EpipolarRemoval {
-    fn facts(&self) -> &'static SourceFacts {
-        &FACTS
-    }
-
-    fn is_enabled(&self) -> bool {
-        self.enabled
-    }
-
-    fn magnitude(&self) -> f64 {
-        self.magnitude
-    }
-
     fn apply(&self, observation: &mut StereoObservation, _: &mut Stream) {
         let greatest_slope = math::tan((self.magnitude as f32).to_radians());
         for feature in &mut observation.features {

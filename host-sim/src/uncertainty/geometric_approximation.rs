@@ -3,11 +3,11 @@
 //! Each end point of each piece, in each image on its own, moves by a circular Gaussian of standard deviation psi_g px
 //! (paper, section 4.2, after Ashbrook et al. 1995).
 
-use super::{SourceFacts, UncertaintySource};
+use super::setting::source;
+use super::{ActsIn, SourceFacts, UncertaintySource};
 use crate::camera::{StereoObservation, move_pieces};
 use crate::random::Stream;
 use edgeloc::geometry::Point2;
-use serde::{Deserialize, Serialize};
 
 const FACTS: SourceFacts = SourceFacts {
     key: "geometric_approximation",
@@ -15,41 +15,20 @@ const FACTS: SourceFacts = SourceFacts {
     symbol: "psi_g",
     unit: "px",
     stream_id: 3,
+    is_enabled_by_default: true,
     default_magnitude: 0.15,
     legal_range: (0.0, 5.0),
+    acts_in: ActsIn::Both,
     cause: "line fitting misplaces each end point by a circular Gaussian of that standard deviation",
     citation: "Tian et al., section 4.2, after Ashbrook et al. 1995",
 };
 
-/// Moves each end point of each piece; the magnitude is psi_g, the standard deviation in x and in y, in pixels.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct GeometricApproximation {
-    /// Whether the source acts.
-    pub enabled: bool,
-    /// psi_g, in pixels.
-    pub magnitude: f64,
-}
-
-impl Default for GeometricApproximation {
-    fn default() -> Self {
-        Self { enabled: true, magnitude: FACTS.default_magnitude }
-    }
+source! {
+    /// Moves each end point of each piece; the magnitude is psi_g, the standard deviation in x and in y, in pixels.
+    pub struct GeometricApproximation: FACTS {}
 }
 
 impl UncertaintySource for GeometricApproximation {
-    fn facts(&self) -> &'static SourceFacts {
-        &FACTS
-    }
-
-    fn is_enabled(&self) -> bool {
-        self.enabled
-    }
-
-    fn magnitude(&self) -> f64 {
-        self.magnitude
-    }
-
     fn apply(&self, observation: &mut StereoObservation, stream: &mut Stream) {
         for feature in &mut observation.features {
             for pieces in [&mut feature.left, &mut feature.right] {

@@ -4,11 +4,11 @@
 //! default (paper, section 4.2, after Coupe 2009), nothing at 0. Light is common to both images, so left and right
 //! move by the same draw unless `is_common` is off.
 
-use super::{SourceFacts, UncertaintySource};
+use super::setting::source;
+use super::{ActsIn, SourceFacts, UncertaintySource};
 use crate::camera::{StereoObservation, move_pieces};
 use crate::random::Stream;
 use edgeloc::geometry::{Point2, Segment2};
-use serde::{Deserialize, Serialize};
 
 const FACTS: SourceFacts = SourceFacts {
     key: "lateral_edge_shift",
@@ -16,43 +16,23 @@ const FACTS: SourceFacts = SourceFacts {
     symbol: "psi_l",
     unit: "px",
     stream_id: 1,
+    is_enabled_by_default: true,
     default_magnitude: 3.0,
     legal_range: (0.0, 10.0),
+    acts_in: ActsIn::Both,
     cause: "illumination moves a detected edge along its normal, by at most the magnitude +- half of it",
     citation: "Tian et al., section 4.2, after Coupe 2009",
 };
 
-/// Moves each feature along its image normal; the magnitude is psi_l, in pixels.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct LateralEdgeShift {
-    /// Whether the source acts.
-    pub enabled: bool,
-    /// psi_l, in pixels.
-    pub magnitude: f64,
-    /// Whether the left and right image of a feature move alike.
-    pub is_common: bool,
-}
-
-impl Default for LateralEdgeShift {
-    fn default() -> Self {
-        Self { enabled: true, magnitude: FACTS.default_magnitude, is_common: true }
+source! {
+    /// Moves each feature along its image normal; the magnitude is psi_l, in pixels.
+    pub struct LateralEdgeShift: FACTS {
+        /// Whether the left and right image of a feature move alike.
+        pub is_common: bool = true,
     }
 }
 
 impl UncertaintySource for LateralEdgeShift {
-    fn facts(&self) -> &'static SourceFacts {
-        &FACTS
-    }
-
-    fn is_enabled(&self) -> bool {
-        self.enabled
-    }
-
-    fn magnitude(&self) -> f64 {
-        self.magnitude
-    }
-
     fn apply(&self, observation: &mut StereoObservation, stream: &mut Stream) {
         for feature in &mut observation.features {
             let left_px = self.draw_shift_px(stream);

@@ -10,7 +10,7 @@
 //! ```
 
 use super::{
-    EdgeDetectionLoss, EpipolarRemoval, GeometricApproximation, LateralEdgeShift, SourceFacts, StereoMatch,
+    ActsIn, EdgeDetectionLoss, EpipolarRemoval, GeometricApproximation, LateralEdgeShift, SourceFacts, StereoMatch,
     UncertaintySource,
 };
 use crate::camera::StereoObservation;
@@ -72,7 +72,7 @@ impl Sources {
     /// Perturbs an observation by every enabled source in turn, each with its own draws.
     pub fn apply(&self, observation: &mut StereoObservation, key: &NoiseKey) {
         for source in self.pipeline() {
-            if source.is_enabled() {
+            if source.is_enabled() && key.is_of(source.facts().acts_in) {
                 source.apply(observation, &mut key.stream(source.facts()));
             }
         }
@@ -118,17 +118,28 @@ pub struct NoiseKey {
 }
 
 impl NoiseKey {
+    const LOOK: &str = "psi-look";
+    const VIEW: &str = "psi-view";
+
     /// The noise of one look of a trial, looks counted from 0. Trials of one index share it wherever they start, as
     /// common random numbers.
     #[must_use]
     pub const fn look(seed: u64, trial: u64, look: u32) -> Self {
-        Self { seed, purpose: "psi-look", index: trial, part: look as u64 }
+        Self { seed, purpose: Self::LOOK, index: trial, part: look as u64 }
     }
 
     /// The noise of one learned view, in one of the maps of a run.
     #[must_use]
     pub const fn view(seed: u64, map_index: u64, node_index: u32, view_index: u16) -> Self {
-        Self { seed, purpose: "psi-view", index: map_index, part: (node_index as u64) << 16 | view_index as u64 }
+        Self { seed, purpose: Self::VIEW, index: map_index, part: (node_index as u64) << 16 | view_index as u64 }
+    }
+
+    fn is_of(&self, acts_in: ActsIn) -> bool {
+        match acts_in {
+            ActsIn::Learning => self.purpose == Self::VIEW,
+            ActsIn::Looks => self.purpose == Self::LOOK,
+            ActsIn::Both => true,
+        }
     }
 
     fn stream(&self, facts: &SourceFacts) -> Stream {
@@ -140,9 +151,10 @@ impl NoiseKey {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::uncertainty::SourceSetting;
     use crate::uncertainty::test_observation::observation;
 
-    const KEY: NoiseKey = NoiseKey::look(9, 4, 0);
+    const KEY: NoiseKey = NoiseKey::view(9, 4, 0, 0);
 
     fn applied(sources: &Sources) -> StereoObservation {
         let mut observation = observation(300);
@@ -174,6 +186,15 @@ mod tests {
     }
 
     #[test]
+    fn a_source_of_learning_leaves_a_look_alone() {
+        let sources = Sources { stereo_match: StereoMatch { enabled: true, magnitude: 0.1 }, ..Sources::none() };
+        let mut look = observation(300);
+        sources.apply(&mut look, &NoiseKey::look(9, 4, 0));
+        assert_eq!(look, observation(300));
+        assert_ne!(applied(&sources), look);
+    }
+
+    #[test]
     fn every_source_has_its_own_stream_and_key_and_a_legal_default() {
         let sources = Sources::default();
         let facts: Vec<_> = sources.pipeline().iter().map(|source| source.facts()).collect();
@@ -197,11 +218,11 @@ mod tests {
     fn draws_differ_between_looks_trials_views_and_seeds() {
         let first = |key: NoiseKey| key.stream(StereoMatch::default().facts()).unit().to_bits();
         let keys = [
-            KEY,
+            NoiseKey::look(9, 4, 0),
             NoiseKey::look(9, 4, 1),
             NoiseKey::look(9, 5, 0),
             NoiseKey::look(8, 4, 0),
-            NoiseKey::view(9, 4, 0, 0),
+            KEY,
             NoiseKey::view(9, 4, 0, 1),
             NoiseKey::view(9, 4, 1, 0),
         ];

@@ -8,11 +8,11 @@
 //! the left image itself is not changed, so the left pieces, which are also what a trial's scene is made of, stay, and
 //! the whole disparity error goes to the right pieces. Only the 3-D segment is affected.
 
-use super::{SourceFacts, UncertaintySource};
+use super::setting::source;
+use super::{ActsIn, SourceFacts, UncertaintySource};
 use crate::camera::{StereoObservation, move_pieces};
 use crate::random::Stream;
 use edgeloc::geometry::Point2;
-use serde::{Deserialize, Serialize};
 
 const FACTS: SourceFacts = SourceFacts {
     key: "stereo_match",
@@ -20,8 +20,10 @@ const FACTS: SourceFacts = SourceFacts {
     symbol: "psi_s",
     unit: "share of features",
     stream_id: 5,
+    is_enabled_by_default: true,
     default_magnitude: 0.01,
     legal_range: (0.0, 0.1),
+    acts_in: ActsIn::Learning,
     cause: "the stereo matcher gives that share of the features a disparity wrong by up to 20 px",
     citation: "Tian et al., section 4.2, after Crossley 2000",
 };
@@ -29,35 +31,12 @@ const FACTS: SourceFacts = SourceFacts {
 /// Greatest error of the disparity of a wrong match, in pixels.
 const MAX_DISPARITY_ERROR_PX: f64 = 20.0;
 
-/// Displaces the right pieces of some features; the magnitude is psi_s, the share of the matchable features.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct StereoMatch {
-    /// Whether the source acts.
-    pub enabled: bool,
-    /// psi_s, a share of the matchable features.
-    pub magnitude: f64,
-}
-
-impl Default for StereoMatch {
-    fn default() -> Self {
-        Self { enabled: true, magnitude: FACTS.default_magnitude }
-    }
+source! {
+    /// Displaces the right pieces of some features; the magnitude is psi_s, the share of the matchable features.
+    pub struct StereoMatch: FACTS {}
 }
 
 impl UncertaintySource for StereoMatch {
-    fn facts(&self) -> &'static SourceFacts {
-        &FACTS
-    }
-
-    fn is_enabled(&self) -> bool {
-        self.enabled
-    }
-
-    fn magnitude(&self) -> f64 {
-        self.magnitude
-    }
-
     fn apply(&self, observation: &mut StereoObservation, stream: &mut Stream) {
         for feature in &mut observation.features {
             // Drawn for every feature, so that which ones are matchable does not move the draws of the others.
