@@ -12,5 +12,7 @@ pub use record::{Outcome, TrialRecord};
 pub use runner::{RunError, RunOutcome, replay, run};
 pub use site::{Site, SiteError};
 pub use start::{TruePose, draw_start};
-pub use statistics::{SuccessRate, success_interval};
+pub use statistics::{
+    PairedCounts, SuccessRate, difference_interval, mcnemar, paired_difference_interval, success_interval,
+};
 pub use trial::LookEvent;
