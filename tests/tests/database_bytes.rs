@@ -228,3 +228,33 @@ proptest! {
         prop_assert_eq!(error, WriteError::OutputTooShort { capacity: needed - 1, needed });
     }
 }
+
+/// The bytes of the annotated example in the documentation of the format: hexadecimal pairs up to the bar of each line.
+fn documented_example() -> Vec<u8> {
+    let text = include_str!("../../core/src/database/format.rs");
+    let lines = text.lines().filter_map(|line| line.strip_prefix("//! ")?.split_once(" | "));
+    let pairs = lines.filter(|(offset, _)| offset.starts_with("0x")).flat_map(|(bytes, _)| bytes.split(' ').skip(1));
+    pairs.map(|pair| u8::from_str_radix(pair, 16).expect("two hexadecimal digits")).collect()
+}
+
+#[test]
+fn the_annotated_example_is_what_is_written_and_reads_as_annotated() {
+    let segment = Segment3 {
+        start: Point3::new(2.0, 0.5, 0.75),
+        end: Point3::new(2.0, 0.5, -0.25),
+        polarity: Polarity::LeftBrighter,
+    };
+    let models = [NodeModel { position: Point2::new(1.5, -2.0), segments: &[segment] }];
+    let mut written = vec![0; encoded_len(&models).expect("it fits")];
+    write(&RIG, 12, &models, &mut written).expect("a legal map");
+
+    let example = documented_example();
+    assert_eq!(written, example, "written: {written:02x?}");
+    let database = TopologicalDatabase::open(&example).expect("the example is a database");
+    let node = database.node(NodeId(0)).expect("its one node");
+    assert_eq!((database.views_per_node(), *database.rig()), (12, RIG));
+    assert!(node.position().distance(models[0].position) < 1e-6);
+    let read: Vec<Segment3> = node.segments().collect();
+    assert_eq!((read.len(), read[0].polarity), (1, segment.polarity));
+    assert!(read[0].start.distance(segment.start) < 1e-6 && read[0].end.distance(segment.end) < 1e-6);
+}

@@ -33,6 +33,23 @@
 //! parallel to the world's). Its contrast polarity is the order of the two points: walking from start to end as seen in
 //! an image, the brighter side lies to the left.
 //!
+//! A database of one node with one segment, in full:
+//!
+//! ```text
+//! 0x00 65 64 67 65 6d 61 70 0a | magic
+//! 0x08 01 00 0c 00 89 86 dc c0 | version 1; 12 views; checksum 0xc0dc8689
+//! 0x10 5c 00 00 00 01 00 00 00 | 92 bytes; 1 node
+//! 0x18 01 00 00 00 80 02 e0 01 | 1 segment; 640 x 480 px
+//! 0x20 66 26 fb 43 00 00 a0 43 | focal length 502.3 px; principal point x 320 px,
+//! 0x28 00 00 70 43 8f c2 f5 3d | y 240 px; baseline 0.12 m
+//! 0x30 00 00 80 3f 9a 99 19 3e | camera height 1 m; near limit 0.15 m
+//! 0x38 00 00 80 3e 00 00 80 41 | matches from 0.25 m to 16 m
+//! 0x40 dc 05 00 00 30 f8 ff ff | node 0 at 1.5, -2 m;
+//! 0x48 00 00 00 00 01 00 00 00 | its first segment is 0, it has 1
+//! 0x50 d0 07 f4 01 ee 02 | from 2, 0.5, 0.75 m
+//! 0x56 d0 07 f4 01 06 ff | to 2, 0.5, -0.25 m; the brighter side is to the left of this way
+//! ```
+//!
 //! A reader refuses any other version; a writer of a changed layout raises it.
 
 use core::ops::Range;
