@@ -6,11 +6,11 @@
 //!      -> uncertainty (the sources, in pipeline order) -> perturbed observation
 //!           |-> learning: triangulate -> stereo edge model per view -> database bytes
 //!           |-> monte_carlo: left-image segments -> Scene -> edgeloc::localize::Localizer -> outcome
-//! outcomes -> statistics -> report
+//! outcomes -> statistics -> sweep -> report
 //! ```
 //!
 //! Arrows between modules point one way: `random < world < camera < uncertainty < learning < scenario < monte_carlo <
-//! report < cli`.
+//! sweep < report < cli`.
 
 pub mod camera;
 pub mod learning;
@@ -18,5 +18,6 @@ pub mod monte_carlo;
 pub mod random;
 pub mod report;
 pub mod scenario;
+pub mod sweep;
 pub mod uncertainty;
 pub mod world;

@@ -59,6 +59,7 @@ fn the_help_of_every_verb_has_an_example() {
         &["run"],
         &["replay"],
         &["report"],
+        &["power"],
     ] {
         let help = done(folder.path(), &[verb, &["--help"]].concat());
         let example = format!("  edgeloc {}", verb.join(" "));
@@ -221,4 +222,25 @@ fn a_run_repeats_byte_for_byte_and_each_trial_replays() {
     assert!(report.contains("near, polarity") && report.contains("report written"), "{report}");
     let page = std::fs::read_to_string(path.join("runs/latest/report.html")).expect("a page");
     assert!(page.contains("edgeloc replay runs/20") || page.contains("every trial succeeded"));
+}
+
+#[test]
+fn the_power_of_a_comparison_is_told_before_a_run() {
+    let folder = folder();
+    let path = folder.path();
+    let ask = ["power", "0.93", "0.90", "--discordance", "0.08", "--trials", "900", "--format", "json"];
+    let told = json(&done(path, &ask));
+    assert_documented(path, &["power"], &told);
+    let trials = |key: &str| told[key].as_u64().expect("a number of trials");
+    assert!(trials("trials_paired_at_best") < trials("trials_paired"), "{told}");
+    assert!(trials("trials_paired") < trials("trials_unpaired"), "{told}");
+    assert!(done(path, &["power", "0.93", "0.90", "--trials", "900"]).contains("900 trials of each setting detect"));
+    for (arguments, expected) in [
+        (&["power", "0.9", "0.9"][..], "equal rates"),
+        (&["power", "93", "90"], "0.93"),
+        (&["power", "0.93", "0.90", "--discordance", "0.01"], "can't be"),
+    ] {
+        let stderr = failed(path, arguments, 1);
+        assert!(stderr.contains(expected), "{arguments:?}: {stderr}");
+    }
 }

@@ -9,6 +9,7 @@ mod demo;
 mod learn;
 mod locate;
 mod map;
+mod power;
 mod progress;
 mod replay;
 mod report;
@@ -56,6 +57,7 @@ enum Verb {
     Run(run::Run),
     Replay(replay::Replay),
     Report(report::Report),
+    Power(power::Power),
 }
 
 /// Reads the command line and does what it asks.
@@ -71,6 +73,7 @@ pub(crate) fn main() -> ExitCode {
         Verb::Run(verb) => verb.execute(),
         Verb::Replay(verb) => verb.execute(),
         Verb::Report(verb) => verb.execute(),
+        Verb::Power(verb) => verb.execute(),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -16,8 +16,8 @@ const CORE: &[Arrow] = &[
     ("localize", &["math", "geometry", "pgh", "matching", "database"]),
 ];
 
-/// `random < world < camera < uncertainty < learning < scenario < monte_carlo < report < cli`; an uncertainty source
-/// never sees the world.
+/// `random < world < camera < uncertainty < learning < scenario < monte_carlo < sweep < report < cli`; an uncertainty
+/// source never sees the world.
 const HOST_SIM: &[Arrow] = &[
     ("random", &[]),
     ("world", &["random"]),
@@ -26,8 +26,9 @@ const HOST_SIM: &[Arrow] = &[
     ("learning", &["random", "world", "camera", "uncertainty"]),
     ("scenario", &["random", "world", "camera", "uncertainty", "learning"]),
     ("monte_carlo", &["random", "world", "camera", "uncertainty", "learning", "scenario"]),
-    ("report", &["random", "world", "camera", "uncertainty", "learning", "scenario", "monte_carlo"]),
-    ("cli", &["random", "world", "camera", "uncertainty", "learning", "scenario", "monte_carlo", "report"]),
+    ("sweep", &["random", "scenario", "monte_carlo"]),
+    ("report", &["random", "world", "camera", "uncertainty", "learning", "scenario", "monte_carlo", "sweep"]),
+    ("cli", &["random", "world", "camera", "uncertainty", "learning", "scenario", "monte_carlo", "sweep", "report"]),
 ];
 
 /// The modules that the file at `path`, relative to its crate's `src`, stands for: `a/b.rs` and `a/b/mod.rs` are
