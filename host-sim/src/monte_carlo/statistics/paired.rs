@@ -107,7 +107,7 @@ pub fn difference_interval(a: SuccessRate, b: SuccessRate) -> (f64, f64) {
     let (Some(rate_a), Some(rate_b)) = (a.rate(), b.rate()) else { return (-1.0, 1.0) };
     let ((below_a, above_a), (below_b, above_b)) = (reach(a), reach(b));
     let difference = rate_b - rate_a;
-    ((difference - below_b.hypot(above_a)).max(-1.0), (difference + above_b.hypot(below_a)).min(1.0))
+    ((difference - libm::hypot(below_b, above_a)).max(-1.0), (difference + libm::hypot(above_b, below_a)).min(1.0))
 }
 
 /// How far Wilson's interval reaches below and above a rate of at least one trial.
