@@ -22,6 +22,7 @@
 //! |---|---|
 //! | [`math`] | the few float functions we use, from one backend on every machine |
 //! | [`geometry`] | angles, headings, segments, scenes, the pinhole camera |
+//! | [`stereo`] | two real cameras: calibration from matched corners, with its covariance, and rectification |
 //! | [`pgh`] | pairwise geometric histograms: shape and fixed-point construction |
 //! | [`matching`] | Bhattacharyya coefficients of histograms, score of a scene against a view |
 //! | [`database`] | the topological database as a written byte format, read in place |
@@ -43,6 +44,7 @@ pub mod localize;
 pub mod matching;
 pub mod math;
 pub mod pgh;
+pub mod stereo;
 
 /// The example of the README, so that it is compiled and run.
 #[cfg(doctest)]

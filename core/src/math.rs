@@ -62,3 +62,18 @@ pub fn abs(x: f32) -> f32 {
 pub fn length(x: f32, y: f32) -> f32 {
     sqrt(x * x + y * y)
 }
+
+/// Double precision, for what is worked out rarely and ill-conditioned: the calibration of the cameras.
+pub mod double {
+    /// Square root of `x`, correctly rounded.
+    #[must_use]
+    pub fn sqrt(x: f64) -> f64 {
+        libm::sqrt(x)
+    }
+
+    /// Sine and cosine of `radians`.
+    #[must_use]
+    pub fn sin_cos(radians: f64) -> (f64, f64) {
+        libm::sincos(radians)
+    }
+}
