@@ -1,9 +1,10 @@
 //! Kidnapped-robot trials end to end: the same rows by every way, the certain case, and a table of a small sweep.
 
 use edgeloc::geometry::{Angle, Heading};
-use edgeloc_sim::monte_carlo::{LookEvent, RunOutcome, Site, TrialRecord, TruePose, replay, run};
-use edgeloc_sim::scenario::{Row, Scenario, Start};
+use edgeloc_sim::monte_carlo::{LookEvent, RunOutcome, Site, Sites, TrialRecord, TruePose, replay, run};
+use edgeloc_sim::scenario::{Row, Scenario, Setting, Start};
 use edgeloc_sim::uncertainty::Sources;
+use edgeloc_sim::world::WireframeWorld;
 use edgeloc_sim::world::office::{self, OfficeOptions};
 use std::fmt::Write as _;
 
@@ -14,26 +15,29 @@ fn small_scenario() -> Scenario {
     scenario
 }
 
-fn office_site(scenario: &Scenario) -> Site {
-    let world = office::generate(&OfficeOptions { seed: 3, ..OfficeOptions::default() });
-    Site::prepare(world, scenario).expect("the office has room for the nodes")
+fn office() -> WireframeWorld {
+    office::generate(&OfficeOptions { seed: 3, ..OfficeOptions::default() })
 }
 
-fn run_on(threads: usize, site: &Site, scenario: &Scenario) -> RunOutcome {
+fn office_sites(scenario: &Scenario) -> Sites {
+    Sites::prepare(office(), scenario).expect("the office has room for the nodes")
+}
+
+fn run_on(threads: usize, sites: &Sites) -> RunOutcome {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a small pool");
-    pool.install(|| run(site, scenario, &|_| ())).expect("the office can be learned")
+    pool.install(|| run(sites, &|_| ())).expect("the office can be learned")
 }
 
 #[test]
 fn one_thread_and_many_and_a_replay_give_the_same_records() {
     let scenario = small_scenario();
-    let site = office_site(&scenario);
-    let alone = run_on(1, &site, &scenario).records;
+    let sites = office_sites(&scenario);
+    let alone = run_on(1, &sites).records;
     assert_eq!(alone.len(), 48);
-    assert_eq!(alone, run_on(5, &site, &scenario).records);
+    assert_eq!(alone, run_on(5, &sites).records);
     for record in &alone {
-        let row = scenario.row(Some(&record.row)).expect("a row of the scenario");
-        let again = replay(&site, &scenario, row, record.trial, None, |_| ()).expect("the map can be learned");
+        let setting = sites.settings().iter().find(|setting| setting.row.name == record.row).expect("a row");
+        let again = replay(&sites.all()[0], setting, record.trial, None, |_| ()).expect("the map can be learned");
         assert_eq!(again, *record);
     }
 }
@@ -41,10 +45,46 @@ fn one_thread_and_many_and_a_replay_give_the_same_records() {
 #[test]
 fn more_trials_leave_the_first_ones_unchanged() {
     let scenario = small_scenario();
-    let site = office_site(&scenario);
-    let few = run_on(2, &site, &Scenario { trials: 5, ..scenario.clone() }).records;
-    let many = run_on(2, &site, &scenario).records;
+    let few = run_on(2, &office_sites(&Scenario { trials: 5, ..scenario.clone() })).records;
+    let many = run_on(2, &office_sites(&scenario)).records;
     assert!(few.iter().all(|record| many.contains(record)));
+}
+
+#[test]
+fn rows_that_share_their_work_give_what_each_gives_alone() {
+    let row = |name: &str| Row::new(name, Start::Near, true);
+    let mut scenario = Scenario { trials: 6, trials_per_map: 4, ..small_scenario() };
+    scenario.rows = vec![
+        row("plain"),
+        row("margin").with("localizer.score_margin", 0.02),
+        row("turn").with("localizer.turn_deg", 60.0),
+        row("bins").with("localizer.pgh.angle_bins", 64),
+        row("no gaps").with("uncertainty.edge_detection_loss.enabled", false),
+        row("nodes").with("learning.nodes", 9),
+        row("wider").with("near_radius_m", 1.0),
+        Row { trials: Some(9), ..Row::new("anywhere", Start::Anywhere, false) },
+        Row::new("anywhere, nodes", Start::Anywhere, true).with("learning.nodes", 9),
+    ];
+    let sites = office_sites(&scenario);
+    assert_eq!(sites.all().len(), 2);
+    let together = run_on(3, &sites).records;
+    for setting in sites.settings() {
+        let alone = run_on(1, &office_sites(&setting.scenario)).records;
+        let of_row = together.iter().filter(|record| record.row == setting.row.name).cloned().collect::<Vec<_>>();
+        assert_eq!(alone.len() as u32, setting.scenario.trials);
+        assert_eq!(alone, of_row, "{}", setting.row.name);
+    }
+    // Common random numbers: the same trial starts at the same pose whatever the row changes.
+    let start = |row: &str, trial: u32| {
+        let record = together.iter().find(|record| record.row == row && record.trial == trial).expect("a trial");
+        [record.true_x_m, record.true_y_m, record.true_heading_deg].map(f32::to_bits)
+    };
+    for trial in 0..6 {
+        assert_eq!(start("plain", trial), start("no gaps", trial));
+        assert_eq!(start("plain", trial), start("turn", trial));
+        assert_eq!(start("anywhere", trial), start("anywhere, nodes", trial));
+        assert_ne!(start("plain", trial), start("wider", trial));
+    }
 }
 
 #[test]
@@ -53,17 +93,19 @@ fn a_noise_free_robot_on_a_node_is_right_at_the_first_look_that_shows_five_segme
     scenario.uncertainty = Sources::none();
     // Without a margin the first look that shows anything decides.
     scenario.localizer.score_margin = 0.0;
-    let site = office_site(&scenario);
+    let site = Site::prepare(office(), &scenario).expect("the office has room for the nodes");
     let mut tried = 0;
     for polarity in [false, true] {
-        let row = Row { name: "on a node".to_owned(), start: Start::Near, polarity };
+        let row = Row::new("on a node", Start::Near, polarity);
+        let scenario = Scenario { rows: vec![row.clone()], ..scenario.clone() };
+        let setting = Setting { row, scenario };
         for (node, position) in site.nodes.iter().enumerate() {
             for heading_deg in [0.0_f32, 75.0, 190.0, 300.0] {
                 let heading = Heading::new(Angle::from_degrees(heading_deg)).expect("finite");
                 let start = Some(TruePose { position: *position, heading });
                 let mut shown = Vec::new();
                 let watch = |look: &LookEvent<'_>| shown.push(look.localizer.scene_segment_count());
-                let record = replay(&site, &scenario, &row, 0, start, watch).expect("the map can be learned");
+                let record = replay(&site, &setting, 0, start, watch).expect("the map can be learned");
                 if shown[0] < 5 {
                     continue; // A bare wall says nothing of the place.
                 }
@@ -78,13 +120,12 @@ fn a_noise_free_robot_on_a_node_is_right_at_the_first_look_that_shows_five_segme
 #[test]
 fn the_table_of_a_small_sweep_is_the_committed_one() {
     let mut scenario = Scenario { trials: 40, trials_per_map: 20, ..small_scenario() };
-    let site = office_site(&scenario);
     let mut table = String::from("sources  B_th   row                     right  of  looks  segments\n");
     for (sources_name, sources) in [("none", Sources::none()), ("paper", Sources::default())] {
         scenario.uncertainty = sources;
         for score_margin in [0.0, 0.1] {
             scenario.localizer.score_margin = score_margin;
-            let records = run_on(2, &site, &scenario).records;
+            let records = run_on(2, &office_sites(&scenario)).records;
             for row in &scenario.rows {
                 let of_row: Vec<&TrialRecord> = records.iter().filter(|record| record.row == row.name).collect();
                 let right = of_row.iter().filter(|record| record.is_success).count();

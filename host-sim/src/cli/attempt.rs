@@ -3,18 +3,19 @@
 use super::console::{self, Format};
 use super::worlds;
 use edgeloc_sim::monte_carlo::{self, Site, TrialRecord, TruePose};
-use edgeloc_sim::report::{FloorPlan, LookExplanation, answer_distance_m, to_svg_file};
-use edgeloc_sim::scenario::{Row, Scenario};
+use edgeloc_sim::report::{FloorPlan, LookExplanation, to_svg_file};
+use edgeloc_sim::scenario::Setting;
 use miette::{IntoDiagnostic, Result, WrapErr};
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// The fields that `--format json` prints for an attempt, for the help.
 pub(super) const JSON_FIELDS: &str = "\
 record = the trial's line of trials.csv (row, trial, map = draw of the map's noise, true_x_m, true_y_m, \
-true_heading_deg, nearest_node, second_nearest_node, nearest_node_distance_m, outcome, answered_node, is_success, looks, \
-scene_segments, leader_score, runner_up_score, truth_score); answer_distance_m from the true position to the answered \
-node; looks (look, heading_deg, seen_segments, used_segments, decision in words, and nodes, of each its score, \
+true_heading_deg, nearest_node, second_nearest_node, nearest_node_distance_m, outcome, answered_node, answer_distance_m \
+from the true position to it, is_success, looks, scene_segments, leader_score, runner_up_score, truth_score, map_bytes, \
+map_segments, message of an error); parameters, by their keys in a scenario, as they were applied; looks (look, heading_deg, seen_segments, used_segments, decision in words, and nodes, of each its score, \
 was_candidate and is_candidate: before and after the look); drawings, the files";
 
 /// One attempt, as `--format json` prints it.
@@ -22,8 +23,8 @@ was_candidate and is_candidate: before and after the look); drawings, the files"
 pub(super) struct Attempt {
     /// The trial's line of trials.csv.
     pub(super) record: TrialRecord,
-    /// Distance from the true position to the answered node [m].
-    answer_distance_m: Option<f64>,
+    /// What was applied.
+    parameters: BTreeMap<String, String>,
     /// What happened, look by look.
     looks: Vec<LookExplanation>,
     /// Drawings of the looks.
@@ -34,14 +35,13 @@ impl Attempt {
     /// Makes the attempt and draws its looks into `folder`.
     pub(super) fn make(
         site: &Site,
-        scenario: &Scenario,
-        row: &Row,
+        setting: &Setting,
         trial: u32,
         start: Option<TruePose>,
         folder: &Path,
     ) -> Result<Self> {
         let mut looks = Vec::new();
-        let record = monte_carlo::replay(site, scenario, row, trial, start, |event| {
+        let record = monte_carlo::replay(site, setting, trial, start, |event| {
             looks.push(LookExplanation::new(looks.len() + 1, event));
         });
         let record = record.into_diagnostic()?;
@@ -56,8 +56,8 @@ impl Attempt {
             console::write_file(&path, to_svg_file(drawing).as_bytes())?;
             drawings.push(path);
         }
-        let answer_distance_m = answer_distance_m(&record, &site.nodes);
-        Ok(Self { record, answer_distance_m, looks, drawings })
+        let parameters = setting.parameters().into_iter().collect();
+        Ok(Self { record, parameters, looks, drawings })
     }
 
     /// Prints the attempt.
@@ -78,7 +78,7 @@ impl Attempt {
         for look in &self.looks {
             console::print(&look.to_text(record))?;
         }
-        let answer = match (record.answered_node, self.answer_distance_m) {
+        let answer = match (record.answered_node, record.answer_distance_m) {
             (Some(node), Some(distance)) => format!("node {node}, {distance:.2} m from the truth"),
             _ => "no answer".to_owned(),
         };

@@ -2,7 +2,7 @@
 
 use super::attempt::{Attempt, JSON_FIELDS};
 use super::console::Format;
-use super::scenario_args::{ScenarioArguments, find_row};
+use super::scenario_args::{ScenarioArguments, find_setting};
 use super::trials;
 use super::world::{file_stem, parse_place};
 use clap::Args;
@@ -42,14 +42,14 @@ pub(super) struct Locate {
 impl Locate {
     pub(super) fn execute(self) -> Result<()> {
         let Some(scenario) = self.scenario.load()? else { return Ok(()) };
-        let row = find_row(&scenario, self.row.as_deref())?;
-        let site = trials::prepare(&scenario)?;
+        let setting = find_setting(&scenario, self.row.as_deref())?;
+        let site = trials::prepare(&setting.scenario)?;
         let start = self.start(&site)?;
         let folder = self
             .out
             .clone()
             .unwrap_or_else(|| PathBuf::from(format!("locate-{}-{}", file_stem(&scenario.name), self.trial)));
-        Attempt::make(&site, &scenario, row, self.trial, start, &folder)?.print(self.format)
+        Attempt::make(&site, &setting, self.trial, start, &folder)?.print(self.format)
     }
 
     fn start(&self, site: &Site) -> Result<Option<TruePose>> {

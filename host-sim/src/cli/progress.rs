@@ -41,7 +41,7 @@ impl TrialProgress {
         let style = style.with_key("rate", |state: &ProgressState, output: &mut dyn Write| {
             let _ = write!(output, "{:.1}/s", state.per_sec());
         });
-        let bar = ProgressBar::new(u64::from(scenario.trials) * scenario.rows.len() as u64).with_style(style);
+        let bar = ProgressBar::new(scenario.total_trials()).with_style(style);
         bar.enable_steady_tick(Duration::from_millis(200));
         Self { bar, rates: Mutex::default() }
     }

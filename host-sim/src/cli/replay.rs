@@ -3,7 +3,7 @@
 use super::attempt::{Attempt, JSON_FIELDS};
 use super::console::{self, Format};
 use super::report::{open, world_of};
-use super::scenario_args::find_row;
+use super::scenario_args::find_setting;
 use super::world::file_stem;
 use clap::Args;
 use edgeloc_sim::monte_carlo::Site;
@@ -37,16 +37,17 @@ impl Replay {
     pub(super) fn execute(self) -> Result<()> {
         let (folder, results) = open(&self.run)?;
         let scenario = &results.scenario;
-        let row = find_row(scenario, self.row.as_deref())?;
+        let setting = find_setting(scenario, self.row.as_deref())?;
+        let row = &setting.row;
         let recorded = results.records.iter().find(|record| record.row == row.name && record.trial == self.trial);
         let recorded = recorded.ok_or_else(|| {
-            let last = scenario.trials.saturating_sub(1);
+            let last = setting.scenario.trials.saturating_sub(1);
             miette!(help = format!("trials count from 0 to {last}"), "there is no trial {} in the run", self.trial)
         })?;
-        let site = Site::prepare(world_of(&results)?, scenario).into_diagnostic()?;
+        let site = Site::prepare(world_of(&results)?, &setting.scenario).into_diagnostic()?;
         let default_out = || folder.path().join(format!("replay-{}-{}", file_stem(&row.name), self.trial));
         let out = self.out.clone().unwrap_or_else(default_out);
-        let attempt = Attempt::make(&site, scenario, row, self.trial, None, &out)?;
+        let attempt = Attempt::make(&site, &setting, self.trial, None, &out)?;
         attempt.print(self.format)?;
         if attempt.record != *recorded {
             return Err(miette!(

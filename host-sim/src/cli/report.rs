@@ -2,7 +2,7 @@
 
 use super::console::{self, Format};
 use super::run::{JSON_FIELDS, RunPrinted};
-use super::scenario_args::find_row;
+use super::scenario_args::find_setting;
 use super::trials::name;
 use super::{summary_table, worlds};
 use clap::Args;
@@ -48,8 +48,9 @@ impl Report {
         let report = page(&results, world.as_ref(), free.as_ref(), &name(folder.path()));
         let report = folder.write("report.html", report.as_bytes())?;
         if let Some(path) = &self.plan {
-            let row = find_row(&results.scenario, self.row.as_deref())?;
-            let plan = FloorPlan::new(world.as_ref(), free.as_ref(), &results.nodes);
+            let row = find_setting(&results.scenario, self.row.as_deref())?.row;
+            let nodes = results.scenario.rows.iter().position(|other| other.name == row.name).unwrap_or(0);
+            let plan = FloorPlan::new(world.as_ref(), free.as_ref(), &results.nodes[nodes]);
             let records = results.records.iter().filter(|record| record.row == row.name);
             console::write_file(path, to_svg_file(trials_plan(&plan, records)).as_bytes())?;
         }

@@ -12,9 +12,9 @@ use std::path::Path;
 
 /// The fields that `--format json` prints for a run, for the help.
 pub(super) const JSON_FIELDS: &str = "\
-folder, and summary = what summary.json holds (rates are fractions of 1): scenario, nodes, map (mean_bytes, \
-mean_segments_per_node, free_m2_per_node), chance_rate, paper_rate, paper_interval (low, high), rows. Each of the rows: \
-row, start, polarity, trials, successes, success_rate (null without trials) with its 95 % Wilson interval success_rate_low \
+folder, and summary = what summary.json holds (rates are fractions of 1): scenario, free_area_m2, paper_rate, paper_interval \
+(low, high), rows. Each of the rows: row, start, polarity, nodes, map (mean_bytes, mean_segments_per_node, \
+free_m2_per_node), chance_rate of blind guessing, trials, successes, success_rate (null without trials) with its 95 % Wilson interval success_rate_low \
 to success_rate_high, unknown (can't tell) and errors in trials, mean_looks, median_looks, mean_segments_per_look, \
 mean_nearest_node_distance_m, median_answer_distance_m (null without answers)";
 

@@ -3,7 +3,7 @@
 use super::console;
 use super::world::file_stem;
 use clap::Args;
-use edgeloc_sim::scenario::{Row, Scenario, ScenarioError, WorldChoice};
+use edgeloc_sim::scenario::{IllegalValue, Scenario, ScenarioError, Setting, WorldChoice};
 use miette::{Result, miette};
 use std::path::PathBuf;
 
@@ -26,7 +26,7 @@ pub(super) struct ScenarioChanges {
     /// Change one setting, such as localizer.turn_deg=60 or rows.0.polarity=false; may be repeated.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     settings: Vec<String>,
-    /// Trials of each row.
+    /// Trials of each row, whatever the row states.
     #[arg(long, value_name = "N")]
     trials: Option<u32>,
     /// Nodes of the map.
@@ -67,12 +67,11 @@ impl ScenarioChanges {
                 scenario.name.truncate(Scenario::MAX_NAME_BYTES);
             }
             scenario.world = WorldChoice::File { file };
-            scenario.check().map_err(|illegal| ScenarioError::Illegal {
-                illegal: Box::new(illegal),
-                text: None,
-                place: None,
-            })?;
         }
+        if self.trials.is_some() {
+            scenario.rows.iter_mut().for_each(|row| row.trials = None);
+        }
+        scenario.check().map_err(refused)?;
         if self.print_config {
             console::print(&scenario.to_toml())?;
             return Ok(None);
@@ -81,11 +80,16 @@ impl ScenarioChanges {
     }
 }
 
-/// The row called `name`, or the first one.
-pub(super) fn find_row<'s>(scenario: &'s Scenario, name: Option<&str>) -> Result<&'s Row> {
+/// The row called `name`, or the first one, with the scenario that it stands for.
+pub(super) fn find_setting(scenario: &Scenario, name: Option<&str>) -> Result<Setting> {
     let rows = scenario.rows.iter().map(|row| format!("{:?}", row.name)).collect::<Vec<_>>().join(", ");
     let asked = name.unwrap_or_default();
     scenario
-        .row(name)
-        .ok_or_else(|| miette!(help = format!("rows: {rows}"), "there is no row {asked:?} in the scenario"))
+        .setting(name)
+        .ok_or_else(|| miette!(help = format!("rows: {rows}"), "there is no row {asked:?} in the scenario"))?
+        .map_err(|illegal| refused(illegal).into())
+}
+
+fn refused(illegal: IllegalValue) -> ScenarioError {
+    ScenarioError::Illegal { illegal: Box::new(illegal), text: None, place: None }
 }

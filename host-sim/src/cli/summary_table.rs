@@ -4,6 +4,9 @@ use super::console;
 use comfy_table::{CellAlignment, Table};
 use edgeloc_sim::report::{RunResults, replay_command, worst_trials};
 
+/// Maps told of in a few lines; a study of many is read from its summary.
+const LISTED_MAPS: usize = 3;
+
 /// The headline table of a run.
 pub(super) fn headline(results: &RunResults) -> Table {
     let mut table = console::table(&[
@@ -30,8 +33,12 @@ pub(super) fn headline(results: &RunResults) -> Table {
         ]);
     }
     table.add_row(["the paper, simulated", &interval(Some(summary.paper_rate), summary.paper_interval), "> 900"]);
-    let chance = format!("{:.1} %", 100.0 * summary.chance_rate);
-    table.add_row([format!("chance, 2 of {} nodes", summary.nodes), chance, String::new()]);
+    for (index, row) in summary.rows.iter().enumerate() {
+        if summary.rows[..index].iter().all(|other| other.nodes != row.nodes) {
+            let chance = format!("{:.1} %", 100.0 * row.chance_rate);
+            table.add_row([format!("chance, 2 of {} nodes", row.nodes), chance, String::new()]);
+        }
+    }
     for column in 2..=6 {
         if let Some(column) = table.column_mut(column) {
             column.set_cell_alignment(CellAlignment::Right);
@@ -50,14 +57,21 @@ pub(super) fn remarks(results: &RunResults) -> String {
         .zip(&summary.rows)
         .map(|(timings, row)| timings.mean_s_per_look * row.mean_looks * row.trials as f64 / looks.max(1.0));
     let localizer_s = looks * mean_s_per_look.sum::<f64>() / results.manifest.host.used_threads.max(1) as f64;
+    let mut maps = String::new();
+    for (index, row) in summary.rows.iter().enumerate() {
+        if summary.rows[..index].iter().all(|other| other.map != row.map) && maps.lines().count() < LISTED_MAPS {
+            let (nodes, map) = (row.nodes, &row.map);
+            maps.push_str(&format!(
+                "map: {nodes} nodes, one for each {:.1} m2 of free space; {:.0} segments a node, {:.0} kB\n",
+                map.free_m2_per_node,
+                map.mean_segments_per_node,
+                map.mean_bytes / 1e3,
+            ));
+        }
+    }
     format!(
         "ms a look: mean wall time of the localiser alone, on one thread\n\
-         map: {} nodes, one for each {:.1} m2 of free space; {:.0} segments a node, {:.0} kB\n\
-         time: {:.1} s; {:.1} s to prepare, {:.1} s for trials, of which the localiser took {localizer_s:.1} s ({} threads)",
-        summary.nodes,
-        summary.map.free_m2_per_node,
-        summary.map.mean_segments_per_node,
-        summary.map.mean_bytes / 1e3,
+         {maps}time: {:.1} s; {:.1} s to prepare, {:.1} s for trials, of which the localiser took {localizer_s:.1} s ({} threads)",
         timings.total_s(),
         timings.prepare_s,
         timings.trials_s,
@@ -67,7 +81,7 @@ pub(super) fn remarks(results: &RunResults) -> String {
 
 /// The command that replays the worst trial, if any failed.
 pub(super) fn worst_replay(results: &RunResults, folder: &str) -> Option<String> {
-    worst_trials(&results.records, &results.nodes, 1).first().map(|record| replay_command(record, folder))
+    worst_trials(&results.records, 1).first().map(|record| replay_command(record, folder))
 }
 
 fn interval(rate: Option<f64>, (low, high): (f64, f64)) -> String {

@@ -4,8 +4,8 @@ use super::console;
 use super::progress::{self, TrialProgress};
 use super::worlds;
 use clap::Args;
-use edgeloc_sim::monte_carlo::{self, Site};
-use edgeloc_sim::report::{Manifest, MapFacts, RunFolder, RunResults, RunTimings, Summary, WorldFacts, page};
+use edgeloc_sim::monte_carlo::{self, Site, Sites};
+use edgeloc_sim::report::{Manifest, RunFolder, RunResults, RunTimings, Summary, WorldFacts, page};
 use edgeloc_sim::scenario::Scenario;
 use miette::{IntoDiagnostic, Result};
 use std::path::{Path, PathBuf};
@@ -38,6 +38,14 @@ pub(super) fn prepare(scenario: &Scenario) -> Result<Site> {
     Ok(site)
 }
 
+/// Makes the world ready for every row of the scenario.
+fn prepare_rows(scenario: &Scenario) -> Result<Sites> {
+    let _wheel = progress::wheel("looking around in the world");
+    let sites = Sites::prepare(worlds::open(&scenario.world)?, scenario).into_diagnostic()?;
+    info!("{}", sites.all()[0].free_space.describe());
+    Ok(sites)
+}
+
 /// Runs a scenario and writes its folder.
 pub(super) fn run(scenario: Scenario, arguments: &RunArguments) -> Result<(RunFolder, RunResults)> {
     let (started, start) = (jiff::Timestamp::now(), Instant::now());
@@ -45,28 +53,25 @@ pub(super) fn run(scenario: Scenario, arguments: &RunArguments) -> Result<(RunFo
         .num_threads(arguments.threads.map_or(0, usize::from))
         .build()
         .into_diagnostic()?;
-    let site = pool.install(|| prepare(&scenario))?;
+    let sites = pool.install(|| prepare_rows(&scenario))?;
+    let site = &sites.all()[0];
     let prepare_time = start.elapsed();
 
     let start = Instant::now();
     let progress = TrialProgress::new(&scenario);
-    let outcome = pool.install(|| monte_carlo::run(&site, &scenario, &|record| progress.count(record)));
+    let outcome = pool.install(|| monte_carlo::run(&sites, &|record| progress.count(record)));
     drop(progress);
     let outcome = outcome.into_diagnostic()?;
     let times = &outcome.look_times;
     let timings = RunTimings::new(&scenario.rows, &outcome.records, times, prepare_time, start.elapsed());
 
-    let map = MapFacts {
-        mean_bytes: outcome.map_bytes,
-        mean_segments_per_node: outcome.segments_per_node,
-        free_m2_per_node: site.free_m2_per_node(),
-    };
+    let nodes: Vec<_> = (0..scenario.rows.len()).map(|row| sites.of_row(row).nodes.clone()).collect();
     let world = WorldFacts::new(&site.world, &scenario.world);
     let threads = pool.current_num_threads();
     let results = RunResults {
         manifest: Manifest::new(&scenario, world, threads, outcome.records.len(), started),
-        summary: Summary::new(&scenario, &site.nodes, map, &outcome.records),
-        nodes: site.nodes.clone(),
+        summary: Summary::new(&scenario, &nodes, site.free_space.area_m2(), &outcome.records),
+        nodes,
         records: outcome.records,
         scenario,
         timings,

@@ -4,6 +4,7 @@ mod looks;
 mod record;
 mod runner;
 mod site;
+mod sites;
 mod start;
 mod statistics;
 mod trial;
@@ -11,6 +12,7 @@ mod trial;
 pub use record::{Outcome, TrialRecord};
 pub use runner::{RunError, RunOutcome, replay, run};
 pub use site::{Site, SiteError};
+pub use sites::{PrepareError, Sites};
 pub use start::{TruePose, draw_start};
 pub use statistics::{
     PairedCounts, SuccessRate, difference_interval, mcnemar, paired_difference_interval, success_interval,

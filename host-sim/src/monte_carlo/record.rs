@@ -10,7 +10,7 @@ pub enum Outcome {
     Localized,
     /// The localiser said that it can't tell.
     Unknown,
-    /// The localiser refused the look, with an error: a failure of ours, counted as a failed trial.
+    /// The localiser refused a look or broke down: a failure of ours, counted as a failed trial.
     Error,
 }
 
@@ -39,6 +39,8 @@ pub struct TrialRecord {
     pub outcome: Outcome,
     /// The node answered, if any.
     pub answered_node: Option<u32>,
+    /// Distance from the true position to the answered node \[m\], if any.
+    pub answer_distance_m: Option<f32>,
     /// Whether the answered node is one of the two nearest (the paper's definition).
     pub is_success: bool,
     /// Looks taken.
@@ -51,4 +53,10 @@ pub struct TrialRecord {
     pub runner_up_score: f64,
     /// Accumulated score of the better of the two nearest nodes, if it was still a candidate.
     pub truth_score: Option<f64>,
+    /// Size of the map that the trial used, in bytes.
+    pub map_bytes: u32,
+    /// Segments in the models of all nodes of that map.
+    pub map_segments: u32,
+    /// What the localiser said when the outcome is an error.
+    pub message: Option<String>,
 }

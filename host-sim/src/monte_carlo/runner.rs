@@ -1,9 +1,16 @@
 //! All trials of a scenario, in parallel, with the same rows whatever the number of threads.
+//!
+//! Rows are settings on common random numbers, so what several of them need is worked out once: a site for each way of
+//! learning, a map for each site, sources and draw of noise, a pose for each kind of start, what is visible from it, the
+//! clean images, and the scene through each set of sources. A row gives the same records as it does alone.
+//!
+//! Trials go map by map, so that never more than a few maps of each kind are in memory.
 
 use super::looks::Looks;
+use super::sites::Sites;
 use super::trial::Trial;
 use super::{LookEvent, Site, TrialRecord, TruePose, draw_start};
-use crate::scenario::{Row, Scenario, Start};
+use crate::scenario::Setting;
 use edgeloc::database::{OpenError, TopologicalDatabase, WriteError};
 use edgeloc::localize::Localizer;
 use rayon::prelude::*;
@@ -16,100 +23,116 @@ pub struct RunOutcome {
     pub records: Vec<TrialRecord>,
     /// Wall time of the localiser for each look of each record, in the same order.
     pub look_times: Vec<Vec<Duration>>,
-    /// Size of a map \[bytes\], the mean over all that were learned.
-    pub map_bytes: f64,
-    /// Segments in the model of a node, the mean over all that were learned.
-    pub segments_per_node: f64,
 }
 
-/// Runs all trials of `scenario` in the current thread pool and tells `on_trial` of each as it ends.
+/// Runs all trials of the scenario that `sites` were prepared for, in the current thread pool, and tells `on_trial` of each
+/// as it ends.
 ///
 /// # Errors
 /// When a map can't be learned.
-pub fn run(site: &Site, scenario: &Scenario, on_trial: &(dyn Fn(&TrialRecord) + Sync)) -> Result<RunOutcome, RunError> {
-    let map_count = scenario.trials.div_ceil(scenario.trials_per_map);
-    let blocks = (0..map_count).into_par_iter().map(|map| run_block(site, scenario, map, on_trial));
-    let blocks: Vec<Block> = blocks.collect::<Result<_, _>>()?;
-
-    let mean = |value: fn(&Block) -> f64| blocks.iter().map(value).sum::<f64>() / f64::from(map_count);
-    let (map_bytes, segments_per_node) = (mean(|block| block.map_bytes), mean(|block| block.segments_per_node));
-    let row_index = |name: &str| scenario.rows.iter().position(|row| row.name == name);
-    let mut trials: Vec<Timed> = blocks.into_iter().flat_map(|block| block.trials).collect();
-    trials.sort_by_key(|(record, _)| (row_index(&record.row), record.trial));
-    let (records, look_times) = trials.into_iter().unzip();
-    Ok(RunOutcome { records, look_times, map_bytes, segments_per_node })
+pub fn run(sites: &Sites, on_trial: &(dyn Fn(&TrialRecord) + Sync)) -> Result<RunOutcome, RunError> {
+    let trials = sites.settings().iter().map(|setting| setting.scenario.trials).max().unwrap_or(0);
+    let trials_per_map = sites.trials_per_map();
+    let maps: Vec<u32> = (0..trials.div_ceil(trials_per_map)).collect();
+    // Maps of few trials are worked on together, so that every thread has something to do.
+    let at_once = (8 * rayon::current_num_threads()).div_ceil(trials_per_map as usize);
+    let mut trials: Vec<Timed> = Vec::new();
+    for maps in maps.chunks(at_once) {
+        let blocks = maps.par_iter().map(|&map| run_block(sites, map, on_trial));
+        let blocks: Vec<Vec<Timed>> = blocks.collect::<Result<_, _>>()?;
+        trials.extend(blocks.into_iter().flatten());
+    }
+    trials.sort_by_key(|(row, record, _)| (*row, record.trial));
+    let (records, look_times) = trials.into_iter().map(|(_, record, times)| (record, times)).unzip();
+    Ok(RunOutcome { records, look_times })
 }
 
-/// Runs one trial again, or a robot put down at a pose of one's own, and tells `watch` of every look.
+/// Runs one trial of a setting again, or a robot put down at a pose of one's own, and tells `watch` of every look.
 ///
-/// `start` of `None` draws the trial's own pose: the record is then the one of the run.
+/// `site` is one prepared for the setting's scenario. `start` of `None` draws the trial's own pose: the record is then the
+/// one of the run.
 ///
 /// # Errors
 /// When the map can't be learned.
 pub fn replay(
     site: &Site,
-    scenario: &Scenario,
-    row: &Row,
+    setting: &Setting,
     trial: u32,
     start: Option<TruePose>,
     watch: impl FnMut(&LookEvent<'_>),
 ) -> Result<TrialRecord, RunError> {
+    let scenario = &setting.scenario;
     let map = trial / scenario.trials_per_map;
     let bytes = site.learn_map(scenario, map)?;
     let database = TopologicalDatabase::open(&bytes)?;
-    let start = start.unwrap_or_else(|| draw_start(site, scenario, row.start, trial));
-    let mut looks = Looks::new(site, scenario, trial, start);
-    let mut memory = vec![0; memory_len(scenario, database.node_count())];
-    Ok(Trial { site, scenario, row, trial, map, start }.run(database, &mut memory, &mut looks, watch))
+    let start = start.unwrap_or_else(|| draw_start(site, scenario, setting.row.start, trial));
+    let mut looks = Looks::new(site, scenario.seed, trial, start);
+    let mut memory = vec![0; memory_len(setting, database.node_count())];
+    let map_bytes = bytes.len() as u32;
+    Ok(Trial { site, setting, trial, map, map_bytes, start }.run(database, &mut memory, &mut looks, watch))
 }
 
-type Timed = (TrialRecord, Vec<Duration>);
+/// Index of the row, record, wall time of each look.
+type Timed = (usize, TrialRecord, Vec<Duration>);
 
-/// The trials that share one map.
-struct Block {
-    trials: Vec<Timed>,
-    map_bytes: f64,
-    segments_per_node: f64,
-}
+/// The trials that share one draw of the map's noise.
+fn run_block(sites: &Sites, map: u32, on_trial: &(dyn Fn(&TrialRecord) + Sync)) -> Result<Vec<Timed>, RunError> {
+    let settings = sites.settings();
+    let first = map * sites.trials_per_map();
+    let last = first.saturating_add(sites.trials_per_map());
+    let runs = |row: usize, trial: u32| trial < settings[row].scenario.trials;
 
-fn run_block(
-    site: &Site,
-    scenario: &Scenario,
-    map: u32,
-    on_trial: &(dyn Fn(&TrialRecord) + Sync),
-) -> Result<Block, RunError> {
-    let bytes = site.learn_map(scenario, map)?;
-    let database = TopologicalDatabase::open(&bytes)?;
-    let first = map * scenario.trials_per_map;
-    let last = scenario.trials.min(first + scenario.trials_per_map);
-    let starts = || {
-        [Start::Near, Start::Anywhere].into_iter().filter(|start| scenario.rows.iter().any(|row| row.start == *start))
-    };
-    let tasks: Vec<(u32, Start)> = (first..last).flat_map(|trial| starts().map(move |start| (trial, start))).collect();
+    let kinds: Vec<Vec<usize>> = same(settings.len(), |a, b| sites.share_map(a, b))
+        .into_iter()
+        .filter(|rows| rows.iter().any(|&row| runs(row, first)))
+        .collect();
+    let learn = |rows: &Vec<usize>| sites.of_row(rows[0]).learn_map(&settings[rows[0]].scenario, map);
+    let bytes: Vec<Vec<u8>> = kinds.par_iter().map(learn).collect::<Result<_, _>>()?;
+    let mut maps = vec![None; settings.len()];
+    for (rows, bytes) in kinds.iter().zip(&bytes) {
+        let opened = (TopologicalDatabase::open(bytes)?, bytes.len() as u32);
+        rows.iter().for_each(|&row| maps[row] = Some(opened));
+    }
 
-    let run_rows = |memory: &mut Vec<u64>, (trial, start): (u32, Start)| {
-        let pose = draw_start(site, scenario, start, trial);
-        let mut looks = Looks::new(site, scenario, trial, pose);
-        let rows = scenario.rows.iter().filter(|row| row.start == start);
-        let run_row = |row| {
+    let poses = same(settings.len(), |a, b| sites.share_pose(a, b));
+    let tasks: Vec<(u32, &Vec<usize>)> =
+        (first..last).flat_map(|trial| poses.iter().map(move |rows| (trial, rows))).collect();
+    let run_rows = |memory: &mut Vec<u64>, (trial, rows): (u32, &Vec<usize>)| {
+        let rows: Vec<usize> = rows.iter().copied().filter(|&row| runs(row, trial)).collect();
+        let Some(&any) = rows.first() else { return Vec::new() };
+        let (site, Setting { row, scenario }) = (sites.of_row(any), &settings[any]);
+        let start = draw_start(site, scenario, row.start, trial);
+        let mut looks = Looks::new(site, scenario.seed, trial, start);
+        let run_row = |row: usize| {
             let mut times = Vec::new();
-            let trial = Trial { site, scenario, row, trial, map, start: pose };
+            let (database, map_bytes) = maps[row].expect("a row with trials here has a map");
+            let trial = Trial { site: sites.of_row(row), setting: &settings[row], trial, map, map_bytes, start };
             let record = trial.run(database, memory, &mut looks, |look| times.push(look.localizer_time));
             on_trial(&record);
-            (record, times)
+            (row, record, times)
         };
-        rows.map(run_row).collect::<Vec<Timed>>()
+        rows.into_iter().map(run_row).collect::<Vec<Timed>>()
     };
-    let memory = || vec![0; memory_len(scenario, database.node_count())];
-    let trials = tasks.into_par_iter().map_init(memory, run_rows).flatten_iter().collect();
-    let segments_per_node = database.segment_count() as f64 / database.node_count() as f64;
-    Ok(Block { trials, map_bytes: bytes.len() as f64, segments_per_node })
+    let needed = |row: usize| maps[row].map_or(0, |(map, _)| memory_len(&settings[row], map.node_count()));
+    let memory_len = (0..settings.len()).map(needed).max().unwrap_or(0);
+    Ok(tasks.into_par_iter().map_init(|| vec![0; memory_len], run_rows).flatten_iter().collect())
 }
 
-/// Words of memory for the hungriest row.
-fn memory_len(scenario: &Scenario, node_count: usize) -> usize {
-    // Rows differ in polarity alone, which needs no memory.
-    Localizer::memory_len(&scenario.localizer.localizer_config(true), node_count)
+/// The numbers below `count` in groups of the same, in order of their first member.
+fn same(count: usize, is_same: impl Fn(usize, usize) -> bool) -> Vec<Vec<usize>> {
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for number in 0..count {
+        match groups.iter_mut().find(|group| is_same(group[0], number)) {
+            Some(group) => group.push(number),
+            None => groups.push(vec![number]),
+        }
+    }
+    groups
+}
+
+/// Words of memory for the localiser of a setting.
+fn memory_len(setting: &Setting, node_count: usize) -> usize {
+    Localizer::memory_len(&setting.localizer_config(), node_count)
 }
 
 /// Why trials can't be run.

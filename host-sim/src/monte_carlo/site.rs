@@ -5,16 +5,17 @@ use crate::scenario::Scenario;
 use crate::world::{FreeSpace, FreeSpaceError, FreeSpaceOptions, Occluders, ViewpointVisibility, WireframeWorld};
 use edgeloc::database::WriteError;
 use edgeloc::geometry::{Point2, Point3, StereoRig};
+use std::sync::Arc;
 
 /// A building made ready for learning and trials.
 #[derive(Debug)]
 pub struct Site {
     /// The building.
-    pub world: WireframeWorld,
+    pub world: Arc<WireframeWorld>,
     /// Its surfaces, ready for visibility rays.
-    pub occluders: Occluders,
+    pub occluders: Arc<Occluders>,
     /// Where the robot can stand.
-    pub free_space: FreeSpace,
+    pub free_space: Arc<FreeSpace>,
     /// The robot's stereo rig.
     pub rig: StereoRig,
     /// Where the nodes are, world frame \[m\].
@@ -29,8 +30,27 @@ impl Site {
     /// When there is no free space, or not enough for the nodes.
     pub fn prepare(world: WireframeWorld, scenario: &Scenario) -> Result<Self, SiteError> {
         let rig = scenario.rig.stereo_rig().map_err(SiteError::Rig)?;
-        let occluders = Occluders::new(&world.surfaces);
-        let free_space = FreeSpace::of(&world, &FreeSpaceOptions::default())?;
+        let occluders = Arc::new(Occluders::new(&world.surfaces));
+        let free_space = Arc::new(FreeSpace::of(&world, &FreeSpaceOptions::default())?);
+        Self::learned(Arc::new(world), occluders, free_space, rig, scenario)
+    }
+
+    /// The same building with the nodes of another `scenario` of the same world, rig and seed.
+    ///
+    /// # Errors
+    /// When there is not enough free space for the nodes.
+    pub fn learned_anew(&self, scenario: &Scenario) -> Result<Self, SiteError> {
+        let (world, occluders, free_space) = (self.world.clone(), self.occluders.clone(), self.free_space.clone());
+        Self::learned(world, occluders, free_space, self.rig, scenario)
+    }
+
+    fn learned(
+        world: Arc<WireframeWorld>,
+        occluders: Arc<Occluders>,
+        free_space: Arc<FreeSpace>,
+        rig: StereoRig,
+        scenario: &Scenario,
+    ) -> Result<Self, SiteError> {
         let nodes = learning::place_nodes(&free_space, usize::from(scenario.learning.nodes), scenario.seed)?;
         let node_views = NodeViews::observe_all(&rig, &world, &occluders, &nodes, scenario.learning.views);
         Ok(Self { world, occluders, free_space, rig, nodes, node_views })

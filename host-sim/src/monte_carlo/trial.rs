@@ -2,7 +2,7 @@
 
 use super::looks::Looks;
 use super::{Outcome, Site, TrialRecord, TruePose};
-use crate::scenario::{Row, Scenario};
+use crate::scenario::Setting;
 use edgeloc::database::{NodeId, TopologicalDatabase};
 use edgeloc::geometry::{Heading, Scene, Segment2};
 use edgeloc::localize::{Decision, HeadingPrior, Localizer, Look, Motion, ObserveError};
@@ -29,31 +29,31 @@ pub struct LookEvent<'a> {
 #[derive(Debug)]
 pub(super) struct Trial<'s> {
     pub(super) site: &'s Site,
-    pub(super) scenario: &'s Scenario,
-    pub(super) row: &'s Row,
+    pub(super) setting: &'s Setting,
     pub(super) trial: u32,
     pub(super) map: u32,
+    pub(super) map_bytes: u32,
     pub(super) start: TruePose,
 }
 
-impl Trial<'_> {
+impl<'s> Trial<'s> {
     /// Lets the robot look around until the localiser decides; tells `watch` of every look.
     pub(super) fn run(
         &self,
         database: TopologicalDatabase<'_>,
         memory: &mut [u64],
-        looks: &mut Looks<'_>,
+        looks: &mut Looks<'s>,
         mut watch: impl FnMut(&LookEvent<'_>),
     ) -> TrialRecord {
-        let mut record = self.record_at_start();
-        let config = self.scenario.localizer.localizer_config(self.row.polarity);
+        let mut record = self.record_at_start(&database);
+        let config = self.setting.localizer_config();
         let mut localizer =
             Localizer::new(database, &config, memory).expect("a checked scenario and memory of the stated length");
         let (mut heading, mut motion) = (self.start.heading, None);
         loop {
             let was_candidate: Vec<bool> =
                 localizer.candidates().scores().iter().map(|node| node.is_candidate()).collect();
-            let scene = looks.scene(record.looks as usize, heading);
+            let scene = looks.scene(record.looks as usize, heading, &self.setting.scenario.uncertainty);
 
             let started = Instant::now();
             let decision = localizer.observe(&Look {
@@ -86,11 +86,11 @@ impl Trial<'_> {
         }
     }
 
-    fn record_at_start(&self) -> TrialRecord {
+    fn record_at_start(&self, database: &TopologicalDatabase<'_>) -> TrialRecord {
         let position = self.start.position;
         let [nearest_node, second_nearest_node] = self.site.two_nearest_nodes(position);
         TrialRecord {
-            row: self.row.name.clone(),
+            row: self.setting.row.name.clone(),
             trial: self.trial,
             map: self.map,
             true_x_m: position.x,
@@ -101,12 +101,16 @@ impl Trial<'_> {
             nearest_node_distance_m: self.site.nodes[nearest_node as usize].distance(position),
             outcome: Outcome::Error,
             answered_node: None,
+            answer_distance_m: None,
             is_success: false,
             looks: 0,
             scene_segments: 0,
             leader_score: 0.0,
             runner_up_score: 0.0,
             truth_score: None,
+            map_bytes: self.map_bytes,
+            map_segments: database.segment_count() as u32,
+            message: None,
         }
     }
 
@@ -121,9 +125,14 @@ impl Trial<'_> {
             Ok(Decision::Localized(localized)) => {
                 record.outcome = Outcome::Localized;
                 record.answered_node = Some(localized.node.0);
+                let answered = self.site.nodes.get(localized.node.0 as usize);
+                record.answer_distance_m = answered.map(|node| node.distance(self.start.position));
             }
             Ok(_) => record.outcome = Outcome::Unknown,
-            Err(_) => record.outcome = Outcome::Error,
+            Err(error) => {
+                record.outcome = Outcome::Error;
+                record.message = Some(error.to_string());
+            }
         }
         let nearest = [record.nearest_node, record.second_nearest_node];
         record.is_success = record.answered_node.is_some_and(|node| nearest.contains(&node));

@@ -274,7 +274,7 @@ mod tests {
     #[test]
     fn a_look_can_be_drawn_even_when_nothing_was_seen() {
         let sample = sample::run();
-        let plan = FloorPlan::new(Some(&sample.world), None, &sample.results.nodes);
+        let plan = FloorPlan::new(Some(&sample.world), None, &sample.results.nodes[0]);
         let svg = look().to_svg(&plan, &PinholeCamera::reference(), &sample.results.records[0]).to_string();
         assert!(svg.contains("look 2 at heading 30.0°") && !svg.contains("NaN"));
     }

@@ -12,6 +12,7 @@ mod page;
 mod run_folder;
 mod summary;
 mod timings;
+mod trials_csv;
 mod trials_plan;
 
 #[cfg(test)]
@@ -24,6 +25,6 @@ pub use floor_plan::{FloorPlan, FreeCells};
 pub use manifest::{HostFacts, Manifest, WorldFacts};
 pub use page::{page, replay_command};
 pub use run_folder::{RunFolder, RunFolderError, RunResults};
-pub use summary::{MapFacts, PAPER_INTERVAL, PAPER_RATE, RowSummary, Summary, answer_distance_m, worst_trials};
+pub use summary::{MapFacts, PAPER_INTERVAL, PAPER_RATE, RowSummary, Summary, worst_trials};
 pub use timings::{RowTimings, RunTimings};
 pub use trials_plan::{trial_marks, trials_plan};

@@ -2,25 +2,28 @@
 
 use super::drawing::{self, SERIES_COUNT, percent};
 use super::{
-    FloorPlan, FreeCells, PAPER_INTERVAL, RowSummary, RunResults, answer_distance_m, looks_histogram, rate_strip,
+    FloorPlan, FreeCells, PAPER_INTERVAL, RowSummary, RunResults, Summary, looks_histogram, rate_strip,
     success_by_distance, trial_marks, worst_trials,
 };
 use crate::monte_carlo::{Outcome, TrialRecord};
 use crate::scenario::{Row, Start};
 use crate::world::WireframeWorld;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use svg::Node as _;
 use svg::node::element::{Definitions, Group, SVG, Use};
 
 const STYLE: &str = include_str!("page.css");
 /// Failures listed with the command that replays them.
 const WORST_COUNT: usize = 3;
+/// Rows drawn one by one; a study of many rows is read from its table.
+const DRAWN_ROWS: usize = 12;
 
 /// The report of a run. `folder` is how commands name its folder.
 ///
 /// Without the world or its free space the plan shows what is left.
 #[must_use]
 pub fn page(results: &RunResults, world: Option<&WireframeWorld>, free: Option<&FreeCells>, folder: &str) -> String {
-    let plan = FloorPlan::new(world, free, &results.nodes);
+    let plans: Vec<FloorPlan> = results.nodes.iter().map(|nodes| FloorPlan::new(world, free, nodes)).collect();
     let title = format!("edgeloc run: {}", results.scenario.name);
     let markup = html! {
         (DOCTYPE)
@@ -38,7 +41,7 @@ pub fn page(results: &RunResults, world: Option<&WireframeWorld>, free: Option<&
                 }
                 (headline(results))
                 (distance(results))
-                (plans(results, &plan))
+                (self::plans(results, &plans))
                 (looks(results))
                 (worst(results, folder))
                 (facts(results, world.is_some()))
@@ -79,7 +82,7 @@ fn headline(results: &RunResults) -> Markup {
             "A trial succeeds when the answered node is one of the two nearest to the true position. Brackets and bars are "
             "95 % Wilson intervals. The paper reports " (percent(summary.paper_rate)) " ["
             (format!("{:.1}, {:.1}", 100.0 * low, 100.0 * high)) "] in simulation (dashed, shown beside the near starts); "
-            "blind guessing gives " (percent(summary.chance_rate)) " (dotted). Time per look is the mean wall time of the "
+            "blind guessing gives " (values(summary, |row| percent(row.chance_rate))) " (dotted). Time per look is the mean wall time of the "
             "localiser alone, on one thread."
         }
         div.wide { table {
@@ -102,7 +105,7 @@ fn short_commit(commit: &str) -> String {
 fn headline_row(results: &RunResults, series: usize, row: &RowSummary) -> Markup {
     let timings = results.timings.rows.iter().find(|timings| timings.row == row.row);
     let paper = (row.start == Start::Near).then_some(PAPER_INTERVAL);
-    let strip = rate_strip(series, row.success(), paper, results.summary.chance_rate);
+    let strip = rate_strip(series, row.success(), paper, row.chance_rate);
     html! { tr {
         td { (key(series)) (row.row) }
         td.strong {
@@ -125,7 +128,7 @@ fn headline_row(results: &RunResults, series: usize, row: &RowSummary) -> Markup
 }
 
 fn distance(results: &RunResults) -> Markup {
-    let rows = &results.scenario.rows;
+    let rows = drawn(results);
     html! { section {
         h2 { "Success against distance to the nearest node" }
         p.note { "Displacement from the learned places is what breaks the method. Bins of fewer than 5 trials are left out; dashed: the paper." }
@@ -134,15 +137,30 @@ fn distance(results: &RunResults) -> Markup {
     } }
 }
 
-fn plans(results: &RunResults, plan: &FloorPlan) -> Markup {
-    let rows = &results.scenario.rows;
-    // The world is drawn once and used by each plan.
+fn plans(results: &RunResults, plans: &[FloorPlan]) -> Markup {
+    let rows = drawn(results);
+    // The world and each set of nodes are drawn once and used by each plan.
+    let first_with = |row: usize| results.nodes.iter().position(|nodes| *nodes == results.nodes[row]).unwrap_or(row);
+    let mut shared = Definitions::new();
+    if let Some(plan) = plans.first() {
+        shared.append(Group::new().set("id", "world").add(plan.background()));
+    }
+    for (row, plan) in plans.iter().enumerate().take(rows.len()).filter(|(row, _)| *row == first_with(*row)) {
+        shared.append(Group::new().set("id", format!("nodes{row}")).add(plan.node_marks()));
+    }
     let shared = SVG::new()
         .set("class", "drawing")
         .set("width", 0)
         .set("height", 0)
         .set("style", "position:absolute")
-        .add(Definitions::new().add(Group::new().set("id", "world").add(plan.background()).add(plan.node_marks())));
+        .add(shared);
+    let trials_of = |series: usize, row: &Row, plan: &FloorPlan| {
+        let of_row = results.records.iter().filter(|record| record.row == row.name);
+        let layers = ["world".to_owned(), format!("nodes{}", first_with(series))];
+        let under =
+            layers.iter().fold(plan.canvas(), |canvas, id| canvas.add(Use::new().set("href", format!("#{id}"))));
+        under.add(trial_marks(plan, of_row)).add(plan.scale_bar())
+    };
     html! { section {
         h2 { "Where it worked" }
         p.note { "Seen from above: every edge of the world, free space tinted. A failure has a line to the node that was answered. Point at a mark for its trial." }
@@ -152,12 +170,10 @@ fn plans(results: &RunResults, plan: &FloorPlan) -> Markup {
         }
         (inline(&shared))
         div.panels {
-            @for (series, row) in rows.iter().enumerate() {
+            @for (series, (row, plan)) in rows.iter().zip(plans).enumerate() {
                 figure {
                     figcaption { (key(series)) (row.name) }
-                    (inline(&plan.canvas().add(Use::new().set("href", "#world")).add(
-                        trial_marks(plan, results.records.iter().filter(|record| record.row == row.name)),
-                    ).add(plan.scale_bar())))
+                    (inline(&trials_of(series, row, plan)))
                 }
             }
         }
@@ -165,18 +181,21 @@ fn plans(results: &RunResults, plan: &FloorPlan) -> Markup {
 }
 
 fn looks(results: &RunResults) -> Markup {
-    let max_looks = results.scenario.localizer.max_looks;
+    let most = |row: &Row| {
+        let setting = results.scenario.setting(Some(&row.name)).and_then(Result::ok);
+        setting.map_or(results.scenario.localizer.max_looks, |setting| setting.scenario.localizer.max_looks)
+    };
     html! { section {
         h2 { "Looks" }
-        p.note { "How many looks a trial took until the answer: right ones green, others red. After " (max_looks) " looks the leading node is the answer." }
+        p.note { "How many looks a trial took until the answer: right ones green, others red. At the last look shown the leading node is the answer." }
         div.panels {
-            @for row in &results.scenario.rows { figure { (inline(&looks_histogram(row, &results.records, max_looks))) } }
+            @for row in drawn(results) { figure { (inline(&looks_histogram(row, &results.records, most(row)))) } }
         }
     } }
 }
 
 fn worst(results: &RunResults, folder: &str) -> Markup {
-    let worst = worst_trials(&results.records, &results.nodes, WORST_COUNT);
+    let worst = worst_trials(&results.records, WORST_COUNT);
     html! { section {
         h2 { "The worst trials" }
         @if worst.is_empty() {
@@ -184,20 +203,21 @@ fn worst(results: &RunResults, folder: &str) -> Markup {
         } @else {
             p.note { "Failures whose answer lies farthest from the truth. The command shows the trial look by look, with drawings." }
             @for record in worst {
-                h3 { (describe(record, results)) }
+                h3 { (describe(record)) }
                 pre { (replay_command(record, folder)) }
             }
         }
     } }
 }
 
-fn describe(record: &TrialRecord, results: &RunResults) -> String {
+fn describe(record: &TrialRecord) -> String {
     let answer = match (record.outcome, record.answered_node) {
         (Outcome::Localized, Some(node)) => {
-            let distance = answer_distance_m(record, &results.nodes).unwrap_or(f64::NAN);
-            format!("answered node {node}, {distance:.1} m away")
+            format!("answered node {node}, {:.1} m away", record.answer_distance_m.unwrap_or(f32::NAN))
         }
-        (Outcome::Error, _) => "the localiser refused".to_owned(),
+        (Outcome::Error, _) => {
+            format!("the localiser failed: {}", record.message.as_deref().unwrap_or("no reason given"))
+        }
         _ => "could not tell".to_owned(),
     };
     let truth = record.truth_score.map_or_else(
@@ -235,9 +255,9 @@ fn facts(results: &RunResults, has_world: bool) -> Markup {
                 @if let Some(file) = &world.file { dt { "file" } dd { (file) @if !has_world { " (not found for this report)" } } }
                 dt { "edges" } dd { (world.edges) " straight edges, " (world.triangles) " triangles" }
                 dt { "checksum" } dd { code { (world.checksum) } }
-                dt { "map" } dd { (summary.nodes) " nodes of " (views) " views, " (format!("{:.0}", summary.map.mean_segments_per_node)) " segments a node" }
-                dt { "density" } dd { "a node for each " (format!("{:.1}", summary.map.free_m2_per_node)) " m² of free space" }
-                dt { "map size" } dd { (format!("{:.0} kB", summary.map.mean_bytes / 1e3)) }
+                dt { "map" } dd { (values(summary, |row| row.nodes.to_string())) " nodes of " (views) " views, " (values(summary, |row| format!("{:.0}", row.map.mean_segments_per_node))) " segments a node" }
+                dt { "density" } dd { "a node for each " (values(summary, |row| format!("{:.1}", row.map.free_m2_per_node))) " m² of free space" }
+                dt { "map size" } dd { (values(summary, |row| format!("{:.0}", row.map.mean_bytes / 1e3))) " kB" }
                 dt { "noise draws" } dd { "the map is learned anew every " (scenario.trials_per_map) " trials" }
             }
             dl {
@@ -259,6 +279,25 @@ fn configuration(results: &RunResults) -> Markup {
         p.note { "The whole scenario as it ran, settings of the command line included; the file " code { "scenario.toml" } " in the run's folder runs as it is." }
         details { summary { "scenario.toml" } pre { (results.scenario.to_toml()) } }
     } }
+}
+
+/// The rows that are drawn one by one.
+fn drawn(results: &RunResults) -> &[Row] {
+    let rows = &results.scenario.rows;
+    &rows[..rows.len().min(DRAWN_ROWS)]
+}
+
+/// A figure of the rows: each of its values once, up to three.
+fn values(summary: &Summary, figure: impl Fn(&RowSummary) -> String) -> String {
+    let mut found: Vec<String> = Vec::new();
+    for value in summary.rows.iter().map(figure) {
+        if !found.contains(&value) {
+            found.push(value);
+        }
+    }
+    let more = if found.len() > 3 { ", …" } else { "" };
+    found.truncate(3);
+    format!("{}{more}", found.join(", "))
 }
 
 fn legend(rows: &[Row]) -> Markup {

@@ -3,9 +3,9 @@
 //!
 //! Every file is written under another name and renamed, so that none is ever half there. A folder is never reused.
 
-use super::{Manifest, RunTimings, Summary, timings::look_times_csv};
+use super::{Manifest, RunTimings, Summary, timings::look_times_csv, trials_csv};
 use crate::monte_carlo::TrialRecord;
-use crate::scenario::{Scenario, ScenarioError};
+use crate::scenario::{Row, Scenario, ScenarioError};
 use edgeloc::geometry::Point2;
 use miette::Diagnostic;
 use serde::de::DeserializeOwned;
@@ -27,8 +27,8 @@ pub struct RunResults {
     pub manifest: Manifest,
     /// What was run.
     pub scenario: Scenario,
-    /// Where the nodes are, world frame.
-    pub nodes: Vec<Point2>,
+    /// Where the nodes of each row are, world frame.
+    pub nodes: Vec<Vec<Point2>>,
     /// One record a trial.
     pub records: Vec<TrialRecord>,
     /// The figures.
@@ -46,6 +46,7 @@ pub struct RunFolder {
 /// A line of `nodes.csv`.
 #[derive(Serialize, Deserialize)]
 struct NodeLine {
+    row: String,
     node: usize,
     x_m: f32,
     y_m: f32,
@@ -111,9 +112,13 @@ impl RunFolder {
             let bytes = bytes.map_err(|error| RunFolderError::writing(self.path.join(path))(error.into()))?;
             self.write(path, &bytes)
         };
-        let nodes = results.nodes.iter().enumerate().map(|(node, at)| NodeLine { node, x_m: at.x, y_m: at.y });
+        let settings = results.scenario.settings().map_err(|illegal| self.damaged("scenario.toml", &illegal))?;
+        let nodes = results.scenario.rows.iter().zip(&results.nodes).flat_map(|(row, nodes)| {
+            let line = |(node, at): (usize, &Point2)| NodeLine { row: row.name.clone(), node, x_m: at.x, y_m: at.y };
+            nodes.iter().enumerate().map(line)
+        });
         self.write("scenario.toml", results.scenario.to_toml().as_bytes())?;
-        table("trials.csv", to_csv(&results.records))?;
+        table("trials.csv", trials_csv::write(&results.records, &settings))?;
         table("nodes.csv", to_csv(nodes))?;
         table("look_times.csv", look_times_csv(&results.records, look_times))?;
         self.write("summary.json", &to_json(&results.summary))?;
@@ -130,12 +135,19 @@ impl RunFolder {
         let scenario_text = self.read("scenario.toml")?;
         let scenario = Scenario::parse(&scenario_text, &self.path.join("scenario.toml").display().to_string())?;
         scenario.check().map_err(|illegal| self.damaged("scenario.toml", &illegal))?;
+        let settings = scenario.settings().map_err(|illegal| self.damaged("scenario.toml", &illegal))?;
         let lines: Vec<NodeLine> = self.read_table("nodes.csv")?;
+        let nodes_of = |row: &Row| {
+            let lines = lines.iter().filter(|line| line.row == row.name);
+            lines.map(|line| Point2::new(line.x_m, line.y_m)).collect()
+        };
+        let records = trials_csv::read(&self.read("trials.csv")?, &settings)
+            .map_err(|reason| self.damaged("trials.csv", &reason))?;
         Ok(RunResults {
             manifest: self.read_json("manifest.json")?,
+            nodes: scenario.rows.iter().map(nodes_of).collect(),
+            records,
             scenario,
-            nodes: lines.iter().map(|line| Point2::new(line.x_m, line.y_m)).collect(),
-            records: self.read_table("trials.csv")?,
             summary: self.read_json("summary.json")?,
             timings: self.read_json("timings.json")?,
         })

@@ -2,7 +2,7 @@
 
 use crate::monte_carlo::{Outcome, TrialRecord};
 use crate::random::Stream;
-use crate::report::{FreeCells, Manifest, MapFacts, RunResults, RunTimings, Summary, WorldFacts};
+use crate::report::{FreeCells, Manifest, RunResults, RunTimings, Summary, WorldFacts};
 use crate::scenario::{Scenario, Start};
 use crate::world::{Surfaces, WireframeWorld};
 use edgeloc::geometry::{Point2, Point3, Polarity, Segment3};
@@ -37,8 +37,8 @@ pub(crate) fn run() -> Sample {
     let look_times = look_times.collect::<Vec<_>>();
     let (prepare, trials) = (Duration::from_secs(2), Duration::from_secs(31));
     let timings = RunTimings::new(&scenario.rows, &records, &look_times, prepare, trials);
-    let map = MapFacts { mean_bytes: 540_000.0, mean_segments_per_node: 622.5, free_m2_per_node: 2.5 };
-    let summary = Summary::new(&scenario, &nodes, map, &records);
+    let nodes = vec![nodes; scenario.rows.len()];
+    let summary = Summary::new(&scenario, &nodes, 120.0, &records);
     let world = world();
     let facts = WorldFacts::new(&world, &scenario.world);
     let manifest = Manifest::new(&scenario, facts, 2, records.len(), jiff::Timestamp::UNIX_EPOCH);
@@ -66,12 +66,16 @@ fn record(stream: &mut Stream, row: &str, start: Start, trial: u32, nodes: &[Poi
         nearest_node_distance_m: distance,
         outcome: Outcome::Localized,
         answered_node: Some(answered as u32),
+        answer_distance_m: Some(place.distance(nodes[answered])),
         is_success,
         looks: 1 + stream.index(if is_success { 4 } else { 12 }) as u32,
         scene_segments: 200,
         leader_score: 1.4,
         runner_up_score: 1.2,
         truth_score: Some(1.3),
+        map_bytes: 540_000,
+        map_segments: 29_880,
+        message: None,
     }
 }
 

@@ -15,12 +15,8 @@ pub const PAPER_INTERVAL: (f64, f64) = (0.909, 0.943);
 pub struct Summary {
     /// Name of the scenario.
     pub scenario: String,
-    /// Nodes of the map.
-    pub nodes: usize,
-    /// The map as learned.
-    pub map: MapFacts,
-    /// Success rate of blind guessing, a fraction: two of the nodes are right.
-    pub chance_rate: f64,
+    /// Where the robot can stand \[m2\].
+    pub free_area_m2: f64,
     /// The paper's success rate, a fraction.
     pub paper_rate: f64,
     /// Lower and upper end of its 95 % interval, as fractions.
@@ -29,7 +25,7 @@ pub struct Summary {
     pub rows: Vec<RowSummary>,
 }
 
-/// Size of a learned map, mean over its noise draws.
+/// Size of a row's learned map, mean over its trials.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct MapFacts {
     /// Mean bytes of the database.
@@ -49,6 +45,12 @@ pub struct RowSummary {
     pub start: Start,
     /// Whether its histograms use polarity.
     pub polarity: bool,
+    /// Nodes of the map.
+    pub nodes: usize,
+    /// The map as learned.
+    pub map: MapFacts,
+    /// Success rate of blind guessing, a fraction: two of the nodes are right.
+    pub chance_rate: f64,
     /// Trials.
     pub trials: u64,
     /// Trials that ended at one of the two nearest nodes.
@@ -84,10 +86,12 @@ impl RowSummary {
 }
 
 impl Summary {
-    /// The figures of `records`, trials of `scenario` in a map of the given nodes and size.
+    /// The figures of `records`, trials of `scenario` with the given nodes of each row in so much free space.
     #[must_use]
-    pub fn new(scenario: &Scenario, nodes: &[Point2], map: MapFacts, records: &[TrialRecord]) -> Self {
-        let rows = scenario.rows.iter().map(|row| {
+    pub fn new(scenario: &Scenario, nodes: &[Vec<Point2>], free_area_m2: f64, records: &[TrialRecord]) -> Self {
+        let rows = scenario.rows.iter().enumerate().map(|(index, row)| {
+            let nodes = nodes.get(index).map_or(0, Vec::len);
+            let per_node = |value: f64| value / nodes.max(1) as f64;
             let records = records.iter().filter(|record| record.row == row.name).collect::<Vec<_>>();
             let success = SuccessRate::of(records.iter().map(|record| record.is_success));
             let interval = success.success_interval();
@@ -98,6 +102,13 @@ impl Summary {
                 row: row.name.clone(),
                 start: row.start,
                 polarity: row.polarity,
+                nodes,
+                map: MapFacts {
+                    mean_bytes: mean(records.iter().map(|record| f64::from(record.map_bytes))),
+                    mean_segments_per_node: per_node(mean(records.iter().map(|record| f64::from(record.map_segments)))),
+                    free_m2_per_node: per_node(free_area_m2),
+                },
+                chance_rate: (2.0 / nodes.max(1) as f64).min(1.0),
                 trials: success.trials,
                 successes: success.successes,
                 success_rate: success.rate(),
@@ -112,15 +123,13 @@ impl Summary {
                     records.iter().map(|record| f64::from(record.nearest_node_distance_m)),
                 ),
                 median_answer_distance_m: median(
-                    records.iter().filter_map(|record| answer_distance_m(record, nodes)).collect(),
+                    records.iter().filter_map(|record| record.answer_distance_m).map(f64::from).collect(),
                 ),
             }
         });
         Self {
             scenario: scenario.name.clone(),
-            nodes: nodes.len(),
-            map,
-            chance_rate: (2.0 / nodes.len().max(1) as f64).min(1.0),
+            free_area_m2,
             paper_rate: PAPER_RATE,
             paper_interval: PAPER_INTERVAL,
             rows: rows.collect(),
@@ -128,20 +137,13 @@ impl Summary {
     }
 }
 
-/// Distance from the true position to the answered node in metres.
-#[must_use]
-pub fn answer_distance_m(record: &TrialRecord, nodes: &[Point2]) -> Option<f64> {
-    let answered = nodes.get(record.answered_node? as usize)?;
-    Some(f64::from(answered.distance(Point2::new(record.true_x_m, record.true_y_m))))
-}
-
 /// The `count` worst failures: errors first, then by distance from the truth to the answered node, then "can't tell".
 /// Of rows that fail from the same start only the worst is listed.
 #[must_use]
-pub fn worst_trials<'r>(records: &'r [TrialRecord], nodes: &[Point2], count: usize) -> Vec<&'r TrialRecord> {
+pub fn worst_trials(records: &[TrialRecord], count: usize) -> Vec<&TrialRecord> {
     let badness = |record: &TrialRecord| match record.outcome {
         Outcome::Error => f64::INFINITY,
-        Outcome::Localized => answer_distance_m(record, nodes).unwrap_or(0.0),
+        Outcome::Localized => record.answer_distance_m.map_or(0.0, f64::from),
         Outcome::Unknown => -1.0,
     };
     let mut failures = records.iter().filter(|record| !record.is_success).collect::<Vec<_>>();
@@ -183,7 +185,7 @@ mod tests {
 
     #[test]
     fn a_run_without_trials_has_figures_too() {
-        let summary = Summary::new(&Scenario::default(), &[], MapFacts::default(), &[]);
+        let summary = Summary::new(&Scenario::default(), &[], 0.0, &[]);
         assert_eq!((summary.rows[0].trials, summary.rows[0].success_rate), (0, None));
         assert!(serde_json::to_string(&summary).is_ok_and(|json| !json.contains("NaN")));
     }
@@ -191,8 +193,8 @@ mod tests {
     #[test]
     fn the_worst_trials_are_failures_farthest_first() {
         let results = sample::run().results;
-        let worst = worst_trials(&results.records, &results.nodes, 3);
-        let distances = worst.iter().filter_map(|record| answer_distance_m(record, &results.nodes));
+        let worst = worst_trials(&results.records, 3);
+        let distances = worst.iter().filter_map(|record| record.answer_distance_m);
         assert!(distances.collect::<Vec<_>>().is_sorted_by(|a, b| a >= b));
         assert!(worst.len() == 3 && worst.iter().all(|record| !record.is_success));
     }

@@ -2,7 +2,6 @@
 
 use super::FloorPlan;
 use super::drawing::{line, tooltip};
-use super::summary::answer_distance_m;
 use crate::monte_carlo::{Outcome, TrialRecord};
 use edgeloc::geometry::Point2;
 use svg::Node;
@@ -22,24 +21,24 @@ pub fn trial_marks<'r>(plan: &FloorPlan, records: impl Iterator<Item = &'r Trial
         let place = plan.to_px(Point2::new(record.true_x_m, record.true_y_m));
         let mark = Circle::new().set("cx", place.0).set("cy", place.1);
         if record.is_success {
-            hits.append(mark.set("class", "hit").set("r", 4.5).add(tooltip(describe(plan, record))));
+            hits.append(mark.set("class", "hit").set("r", 4.5).add(tooltip(describe(record))));
             continue;
         }
         let class = if record.outcome == Outcome::Unknown { "unknown" } else { "miss" };
         if let Some(&answered) = record.answered_node.and_then(|node| plan.nodes().get(node as usize)) {
             lines.append(line("miss-line", place, plan.to_px(answered)));
         }
-        misses.append(mark.set("class", class).set("r", 5).add(tooltip(describe(plan, record))));
+        misses.append(mark.set("class", class).set("r", 5).add(tooltip(describe(record))));
     }
     Group::new().add(hits).add(lines).add(misses)
 }
 
-fn describe(plan: &FloorPlan, record: &TrialRecord) -> String {
+fn describe(record: &TrialRecord) -> String {
     let answer = match (record.outcome, record.answered_node) {
         (Outcome::Unknown, _) => "can't tell".to_owned(),
         (Outcome::Error, _) => "an error".to_owned(),
         (Outcome::Localized, None) => "no node".to_owned(),
-        (Outcome::Localized, Some(node)) => match answer_distance_m(record, plan.nodes()) {
+        (Outcome::Localized, Some(node)) => match record.answer_distance_m {
             Some(distance) => format!("node {node}, {distance:.2} m away"),
             None => format!("node {node}"),
         },

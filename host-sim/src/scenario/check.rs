@@ -17,6 +17,12 @@ impl Scenario {
     /// # Errors
     /// The key, its value, the legal range and the remedy.
     pub fn check(&self) -> Result<(), IllegalValue> {
+        self.check_values()?;
+        self.check_rows()
+    }
+
+    /// Everything but the rows.
+    pub(super) fn check_values(&self) -> Result<(), IllegalValue> {
         self.check_name()?;
         within("seed", self.seed, 0..=i64::MAX as u64, "TOML integers have 63 bits; choose a smaller seed")?;
         within("trials", self.trials, 1..=1_000_000, "500 trials give rates to about 3 points")?;
@@ -27,8 +33,7 @@ impl Scenario {
         self.check_world()?;
         self.check_rig()?;
         check_localizer(&self.localizer)?;
-        self.check_uncertainty()?;
-        self.check_rows()
+        self.check_uncertainty()
     }
 
     fn check_name(&self) -> Result<(), IllegalValue> {
@@ -54,6 +59,7 @@ impl Scenario {
 
     fn check_rig(&self) -> Result<StereoRig, IllegalValue> {
         self.rig.stereo_rig().map_err(|reason| IllegalValue {
+            row: None,
             key: "rig".to_owned(),
             value: format!("{:?}", self.rig),
             legal: reason,
@@ -78,9 +84,9 @@ impl Scenario {
         require((1..=100).contains(&count), "rows", &format!("{count} rows"), "1 to 100 rows", || {
             "add a [[rows]] table with name, start and polarity".to_owned()
         })?;
-        let total = u64::from(self.trials) * count as u64;
+        let total = self.total_trials();
         let legal = format!("at most {} trials of all rows together", Self::MAX_TOTAL_TRIALS);
-        let value = format!("{} in each of {count} rows", self.trials);
+        let value = format!("{} in each of {count} rows, or as they state", self.trials);
         require(total <= Self::MAX_TOTAL_TRIALS, "trials", &value, &legal, || {
             "the results of a larger run could not be read back; lower trials, or run the rows apart".to_owned()
         })?;
@@ -97,7 +103,7 @@ impl Scenario {
                 "rows are told apart by name in trials.csv; rename one of the two".to_owned()
             })?;
         }
-        Ok(())
+        self.settings().map(|_| ())
     }
 }
 
@@ -144,7 +150,13 @@ fn require(
     if is_legal {
         return Ok(());
     }
-    Err(IllegalValue { key: key.to_owned(), value: value.to_string(), legal: legal.to_owned(), remedy: remedy() })
+    Err(IllegalValue {
+        row: None,
+        key: key.to_owned(),
+        value: value.to_string(),
+        legal: legal.to_owned(),
+        remedy: remedy(),
+    })
 }
 
 #[cfg(test)]

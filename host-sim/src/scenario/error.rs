@@ -70,8 +70,10 @@ pub enum ScenarioError {
 
 /// A value outside its legal range.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("{key} = {value} is not legal; legal: {legal}")]
+#[error("{}{key} = {value} is not legal; legal: {legal}", row.as_ref().map(|row| format!("in row {row:?}: ")).unwrap_or_default())]
 pub struct IllegalValue {
+    /// The row that sets it; none when the scenario itself does.
+    pub row: Option<String>,
     /// The dotted key, such as `localizer.turn_deg`.
     pub key: String,
     /// The value found.
@@ -80,4 +82,12 @@ pub struct IllegalValue {
     pub legal: String,
     /// What to do.
     pub remedy: String,
+}
+
+impl IllegalValue {
+    /// The same, of a value that the row at `index` called `name` sets.
+    pub(super) fn in_row(self, index: usize, name: &str) -> Self {
+        let key = if self.key == "trials" { "trials".to_owned() } else { format!("set.{}", self.key) };
+        Self { row: Some(name.to_owned()), key: format!("rows.{index}.{key}"), ..self }
+    }
 }

@@ -131,7 +131,14 @@ fn make_room(root: &mut toml::Value, key: &str) {
 }
 
 /// Puts `value` at the dotted `key`; a number in the key is an index into a list.
-fn insert(root: &mut toml::Value, key: &str, value: toml::Value) -> Result<(), String> {
+pub(super) fn insert(root: &mut toml::Value, key: &str, value: toml::Value) -> Result<(), String> {
+    if let Some((row, change)) = key.split_once(".set.") {
+        let table = row.split('.').try_fold(root, child).and_then(toml::Value::as_table_mut);
+        let row = table.ok_or_else(|| format!("there is no {row:?} to set {change:?} in"))?;
+        let changes = row.entry("set").or_insert_with(|| toml::Value::Table(toml::Table::new()));
+        changes.as_table_mut().ok_or("set is a table of keys")?.insert(change.to_owned(), value);
+        return Ok(());
+    }
     let (parent, last) = key.rsplit_once('.').map_or((None, key), |(parent, last)| (Some(parent), last));
     let mut place = root;
     for part in parent.into_iter().flat_map(|parent| parent.split('.')) {
@@ -157,17 +164,24 @@ fn child<'a>(parent: &'a mut toml::Value, part: &str) -> Option<&'a mut toml::Va
 /// Where the value of the dotted `key` stands in `text`.
 fn place_of(text: &str, key: &str) -> Option<SourceSpan> {
     let document = DeTable::parse(text).ok()?;
-    let mut parts = key.split('.');
-    let mut value = document.get_ref().get(parts.next()?)?;
-    for part in parts {
-        value = match value.get_ref() {
-            DeValue::Table(table) => table.get(part)?,
-            DeValue::Array(list) => list.get(part.parse::<usize>().ok()?)?,
-            _ => return None,
-        };
-    }
-    let span: Range<usize> = value.span();
+    let span: Range<usize> = span_in(document.get_ref(), &key.split('.').collect::<Vec<_>>())?;
     Some(span.into())
+}
+
+/// Where the value at a path of keys stands; a key may itself be dotted, in quotes, and so take several parts.
+fn span_in(table: &DeTable<'_>, path: &[&str]) -> Option<Range<usize>> {
+    (1..=path.len()).find_map(|taken| {
+        let (key, mut rest) = (path[..taken].join("."), &path[taken..]);
+        let mut value = table.get(key.as_str())?;
+        while let (DeValue::Array(list), Some((index, after))) = (value.get_ref(), rest.split_first()) {
+            (value, rest) = (list.get(index.parse::<usize>().ok()?)?, after);
+        }
+        match value.get_ref() {
+            _ if rest.is_empty() => Some(value.span()),
+            DeValue::Table(inner) => span_in(inner, rest),
+            _ => None,
+        }
+    })
 }
 
 #[cfg(test)]
@@ -245,6 +259,8 @@ mod tests {
             ("", &["nowhere.turn=30"], "nowhere"),
             ("", &["trials"], "no '='"),
             ("", &["rows.9.polarity=true"], "no \"9\""),
+            ("", &["rows.9.set.localizer.turn_deg=3"], "no \"rows.9\""),
+            ("", &["rows.1.set.localizer.turn_deg=400"], "in row \"near, no polarity\""),
             ("[learning]\nnodes = 0\n", &[], "learning.nodes = 0 is not legal; legal: 1 to 4096"),
             ("[uncertainty.stereo_match]\nmagnitude = 2\n", &[], "stereo_match.magnitude = 2 is not legal"),
             ("", &["uncertainty.edge_detection_loss.magnitude=1"], "takes 0 to 0.3125"),
@@ -257,10 +273,24 @@ mod tests {
 
     #[test]
     fn an_illegal_value_is_underlined_where_it_stands() {
-        let text = "trials = 3\n[learning]\nnodes = 0\n";
-        let Err(ScenarioError::Illegal { place: Some(place), .. }) = load_text(text, &[]) else {
-            panic!("an illegal value with its place");
-        };
-        assert_eq!(&text[place.offset()..place.offset() + place.len()], "0");
+        let row = "[[rows]]\nname = \"odd\"\nstart = \"near\"\npolarity = true\n";
+        for text in [
+            "trials = 3\n[learning]\nnodes = 0\n".to_owned(),
+            format!("{row}set = {{ near_radius_m = 1, \"learning.nodes\" = 0 }}"),
+            format!("{row}set.learning.nodes = 0"),
+        ] {
+            let Err(ScenarioError::Illegal { place: Some(place), .. }) = load_text(&text, &[]) else {
+                panic!("an illegal value with its place: {text}");
+            };
+            assert_eq!(&text[place.offset()..place.offset() + place.len()], "0");
+        }
+    }
+
+    #[test]
+    fn a_row_is_given_values_from_the_command_line() {
+        let settings = ["rows.0.set.localizer.turn_deg=60", "rows.0.trials=3"];
+        let scenario = load_text("", &settings).expect("legal");
+        let setting = scenario.setting(None).expect("a first row").expect("legal");
+        assert_eq!((setting.scenario.localizer.turn_deg, setting.scenario.trials), (60.0, 3));
     }
 }

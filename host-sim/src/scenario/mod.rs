@@ -11,12 +11,14 @@ mod load;
 mod localizer;
 mod preset;
 mod rig;
+mod row;
 mod world_choice;
 
 pub use error::{IllegalValue, ScenarioError};
 pub use localizer::{LocalizerKind, LocalizerSettings, PghSettings};
 pub use preset::{PRESETS, Preset};
 pub use rig::RigSettings;
+pub use row::{Row, Setting, Start};
 pub use world_choice::WorldChoice;
 
 use crate::uncertainty::Sources;
@@ -30,7 +32,7 @@ pub struct Scenario {
     pub name: String,
     /// Seed of all random draws of the run; the same seed gives the same `trials.csv`.
     pub seed: u64,
-    /// Trials of each row.
+    /// Trials of each row that does not state its own.
     pub trials: u32,
     /// Trials that share one draw of the map's noise; then the world is learned anew.
     pub trials_per_map: u32,
@@ -54,7 +56,6 @@ pub struct Scenario {
 impl Default for Scenario {
     /// The paper's setting in the bundled office, the preset `paper`.
     fn default() -> Self {
-        let row = |name: &str, start, polarity| Row { name: name.to_owned(), start, polarity };
         Self {
             name: "paper".to_owned(),
             seed: 1,
@@ -67,10 +68,10 @@ impl Default for Scenario {
             localizer: LocalizerSettings::default(),
             uncertainty: Sources::default(),
             rows: vec![
-                row("near, polarity", Start::Near, true),
-                row("near, no polarity", Start::Near, false),
-                row("anywhere, polarity", Start::Anywhere, true),
-                row("anywhere, no polarity", Start::Anywhere, false),
+                Row::new("near, polarity", Start::Near, true),
+                Row::new("near, no polarity", Start::Near, false),
+                Row::new("anywhere, polarity", Start::Anywhere, true),
+                Row::new("anywhere, no polarity", Start::Anywhere, false),
             ],
         }
     }
@@ -101,26 +102,4 @@ impl Default for LearningSettings {
     fn default() -> Self {
         Self { nodes: 72, views: 12 }
     }
-}
-
-/// One setting of a run: trials of different rows share robot poses and noise wherever their settings agree.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Row {
-    /// Name, unique in the scenario.
-    pub name: String,
-    /// Where the robot is put down.
-    pub start: Start,
-    /// Whether the histograms tell which side of an edge is brighter.
-    pub polarity: bool,
-}
-
-/// Where the robot of a trial is put down; its heading is uniform in either case.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Start {
-    /// Within `near_radius_m` of a node, in free space.
-    Near,
-    /// Uniform in free space.
-    Anywhere,
 }
