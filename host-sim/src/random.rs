@@ -28,6 +28,12 @@ impl Stream {
         Self { generator: ChaCha8Rng::from_seed(key) }
     }
 
+    /// Goes on at the `place`-th of many places in the stream, each with room for 32,768 draws: what is drawn there
+    /// does not depend on how much was drawn before.
+    pub fn seek(&mut self, place: usize) {
+        self.generator.set_word_pos((place as u128) << 16);
+    }
+
     /// A number uniform in `[0, 1)`, a multiple of 2^-53.
     pub fn unit(&mut self) -> f64 {
         (self.generator.next_u64() >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)
@@ -82,6 +88,20 @@ mod tests {
         ] {
             assert_ne!(base, first(other));
         }
+    }
+
+    #[test]
+    fn a_place_in_a_stream_is_the_same_however_it_is_reached() {
+        let mut stream = Stream::new(1, "trial", 2, 3);
+        let from_start = stream.unit();
+        stream.seek(7);
+        let at_place = stream.unit();
+        (0..100).for_each(|_| _ = stream.unit());
+        stream.seek(7);
+        assert_eq!(stream.unit().to_bits(), at_place.to_bits());
+        stream.seek(0);
+        assert_eq!(stream.unit().to_bits(), from_start.to_bits());
+        assert_ne!(at_place.to_bits(), from_start.to_bits());
     }
 
     #[test]

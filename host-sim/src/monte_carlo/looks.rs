@@ -5,6 +5,7 @@ use crate::camera::{self, StereoObservation};
 use crate::uncertainty::{NoiseKey, Sources};
 use crate::world::ViewpointVisibility;
 use edgeloc::geometry::{Heading, Segment2};
+use edgeloc::localize::HeadingPrior;
 
 /// The looks of one trial from one pose: the same for every row that turns the same through the same sources.
 ///
@@ -45,10 +46,14 @@ impl<'s> Looks<'s> {
         &self.scenes[index].segments
     }
 
+    /// What the compass tells in the `look`-th look, from 0, with the optical axis along `heading`.
+    pub(super) fn compass_reading(&self, look: usize, heading: Heading, sources: &Sources) -> HeadingPrior {
+        sources.compass_reading(heading, &self.noise_key(look))
+    }
+
     fn take(&mut self, look: usize, heading: Heading, sources: &Sources) -> Vec<Segment2> {
         let mut observation = self.clean(heading).clone();
-        let key = NoiseKey::look(self.seed, u64::from(self.trial), look as u32);
-        sources.apply(&mut observation, &key);
+        sources.apply(&mut observation, &self.noise_key(look));
         camera::left_segments(&observation)
     }
 
@@ -60,5 +65,9 @@ impl<'s> Looks<'s> {
             self.clean.len() - 1
         });
         &self.clean[index].1
+    }
+
+    fn noise_key(&self, look: usize) -> NoiseKey {
+        NoiseKey::look(self.seed, u64::from(self.trial), look as u32)
     }
 }

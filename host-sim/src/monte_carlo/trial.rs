@@ -13,6 +13,8 @@ use std::time::{Duration, Instant};
 pub struct LookEvent<'a> {
     /// True heading of the optical axis.
     pub heading: Heading,
+    /// What the compass told of it.
+    pub compass: HeadingPrior,
     /// The segments that the robot saw.
     pub scene: &'a [Segment2],
     /// Which nodes were candidates before this look.
@@ -53,11 +55,13 @@ impl<'s> Trial<'s> {
         loop {
             let was_candidate: Vec<bool> =
                 localizer.candidates().scores().iter().map(|node| node.is_candidate()).collect();
-            let scene = looks.scene(record.looks as usize, heading, &self.setting.scenario.uncertainty);
+            let (look, sources) = (record.looks as usize, &self.setting.scenario.uncertainty);
+            let compass = looks.compass_reading(look, heading, sources);
+            let scene = looks.scene(look, heading, sources);
 
             let started = Instant::now();
             let decision = localizer.observe(&Look {
-                heading: Some(HeadingPrior::exact(heading)),
+                heading: Some(compass),
                 motion_since_last: motion,
                 scene: Scene::new(scene),
             });
@@ -67,6 +71,7 @@ impl<'s> Trial<'s> {
             record.scene_segments += localizer.scene_segment_count() as u32;
             watch(&LookEvent {
                 heading,
+                compass,
                 scene,
                 was_candidate: &was_candidate,
                 localizer: &localizer,

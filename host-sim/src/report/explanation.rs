@@ -28,6 +28,8 @@ pub struct LookExplanation {
     pub look: usize,
     /// True heading of the optical axis in degrees.
     pub heading_deg: f64,
+    /// What the compass told of it, in degrees.
+    pub compass_deg: f64,
     /// Segments that the camera saw.
     pub seen_segments: usize,
     /// Segments that entered the matching.
@@ -71,6 +73,7 @@ impl LookExplanation {
         Self {
             look,
             heading_deg: f64::from(event.heading.angle().degrees()),
+            compass_deg: f64::from(event.compass.mean.angle().degrees()),
             seen_segments: event.scene.len(),
             used_segments: event.localizer.scene_segment_count(),
             nodes: scores.iter().zip(event.was_candidate).map(standing).collect(),
@@ -93,8 +96,12 @@ impl LookExplanation {
     pub fn to_text(&self, record: &TrialRecord) -> String {
         let ranking = self.ranking();
         let left = self.nodes.iter().filter(|node| node.is_candidate).count();
+        let compass = match self.compass_deg {
+            told if (told - self.heading_deg).abs() < 0.05 => String::new(),
+            told => format!(" (compass {told:.1})"),
+        };
         let mut words = format!(
-            "look {:>2}, heading {:>6.1} degrees: {} segments seen, {} matched against {} candidates\n",
+            "look {:>2}, heading {:>6.1} degrees{compass}: {} segments seen, {} matched against {} candidates\n",
             self.look,
             self.heading_deg,
             self.seen_segments,
@@ -248,6 +255,7 @@ mod tests {
         LookExplanation {
             look: 2,
             heading_deg: 30.0,
+            compass_deg: 30.0,
             seen_segments: 140,
             used_segments: 90,
             nodes: vec![
@@ -269,6 +277,14 @@ mod tests {
         let position = |part: &str| words.find(part).unwrap_or_else(|| panic!("{words} lacks {part}"));
         assert!(position("node   2  score 1.300  stays") < position("node   1  score 1.100  stays  <- one of"));
         assert!(position("node   3  score 0.900  drops out  <- one of") < position("2 left -> look again"));
+    }
+
+    #[test]
+    fn the_words_tell_of_a_compass_that_errs() {
+        let record = &sample::run().results.records[0];
+        assert!(!look().to_text(record).contains("compass"));
+        let wrong = LookExplanation { compass_deg: 32.5, ..look() };
+        assert!(wrong.to_text(record).contains("heading   30.0 degrees (compass 32.5): "));
     }
 
     #[test]

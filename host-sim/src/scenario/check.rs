@@ -69,13 +69,10 @@ impl Scenario {
 
     fn check_uncertainty(&self) -> Result<(), IllegalValue> {
         let Err(error) = self.uncertainty.clone().checked() else { return Ok(()) };
-        let (low, high) = error.facts.legal_range;
-        let key = format!("uncertainty.{}.magnitude", error.facts.key);
-        require(false, &key, &error.magnitude, &format!("{low} to {high} {}", error.facts.unit), || {
-            format!(
-                "the default is {}; to switch the source off set its enabled = false",
-                error.facts.default_magnitude
-            )
+        let (number, (low, high)) = (error.number, error.number.legal_range);
+        let key = format!("uncertainty.{}.{}", error.facts.key, number.key);
+        require(false, &key, &number.value, &format!("{low} to {high}{}", error.unit()), || {
+            format!("the default is {}; to switch the source off set its enabled = false", number.default)
         })
     }
 

@@ -47,7 +47,7 @@ pub struct Scenario {
     /// The localiser; its British spelling is understood too.
     #[serde(alias = "localiser")]
     pub localizer: LocalizerSettings,
-    /// The uncertainty sources, in learning and in trials alike.
+    /// The uncertainty sources.
     pub uncertainty: Sources,
     /// The rows of the run: the settings that are compared.
     pub rows: Vec<Row>,

@@ -4,7 +4,7 @@
 //! (paper, section 4.2, after Ashbrook et al. 1995).
 
 use super::setting::source;
-use super::{ActsIn, SourceFacts, UncertaintySource};
+use super::{ActsIn, SourceFacts, UncertaintySource, for_each_feature};
 use crate::camera::{StereoObservation, move_pieces};
 use crate::random::Stream;
 use edgeloc::geometry::Point2;
@@ -30,21 +30,19 @@ source! {
 
 impl UncertaintySource for GeometricApproximation {
     fn apply(&self, observation: &mut StereoObservation, stream: &mut Stream) {
-        for feature in &mut observation.features {
+        for_each_feature(observation, stream, |feature, stream| {
             for pieces in [&mut feature.left, &mut feature.right] {
-                move_pieces(pieces, |piece| {
-                    (self.misplaced(piece.start(), stream), self.misplaced(piece.end(), stream))
-                });
+                let mut moved = |point: Point2| misplaced(point, self.magnitude, stream);
+                move_pieces(pieces, |piece| (moved(piece.start()), moved(piece.end())));
             }
-        }
+        });
     }
 }
 
-impl GeometricApproximation {
-    fn misplaced(&self, point: Point2, stream: &mut Stream) -> Point2 {
-        let error = stream.circular_gaussian();
-        Point2::new(point.x + (error[0] * self.magnitude) as f32, point.y + (error[1] * self.magnitude) as f32)
-    }
+/// A point moved by a circular Gaussian of `deviation_px` in x and in y.
+pub(super) fn misplaced(point: Point2, deviation_px: f64, stream: &mut Stream) -> Point2 {
+    let [x, y] = stream.circular_gaussian();
+    Point2::new(point.x + (x * deviation_px) as f32, point.y + (y * deviation_px) as f32)
 }
 
 #[cfg(test)]

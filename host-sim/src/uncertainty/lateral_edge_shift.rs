@@ -5,7 +5,7 @@
 //! move by the same draw unless `is_common` is off.
 
 use super::setting::source;
-use super::{ActsIn, SourceFacts, UncertaintySource};
+use super::{ActsIn, SourceFacts, UncertaintySource, for_each_feature};
 use crate::camera::{StereoObservation, move_pieces};
 use crate::random::Stream;
 use edgeloc::geometry::{Point2, Segment2};
@@ -34,12 +34,12 @@ source! {
 
 impl UncertaintySource for LateralEdgeShift {
     fn apply(&self, observation: &mut StereoObservation, stream: &mut Stream) {
-        for feature in &mut observation.features {
+        for_each_feature(observation, stream, |feature, stream| {
             let left_px = self.draw_shift_px(stream);
             let right_px = if self.is_common { left_px } else { self.draw_shift_px(stream) };
             move_pieces(&mut feature.left, |piece| shifted(piece, left_px));
             move_pieces(&mut feature.right, |piece| shifted(piece, right_px));
-        }
+        });
     }
 }
 
@@ -51,7 +51,7 @@ impl LateralEdgeShift {
 }
 
 /// The end points of a piece moved along its normal (to its right, walking from start to end).
-fn shifted(piece: &Segment2, shift_px: f32) -> (Point2, Point2) {
+pub(super) fn shifted(piece: &Segment2, shift_px: f32) -> (Point2, Point2) {
     let (start, end) = (piece.start(), piece.end());
     let scale = shift_px / piece.length_px();
     let (dx, dy) = ((start.y - end.y) * scale, (end.x - start.x) * scale);
@@ -61,14 +61,7 @@ fn shifted(piece: &Segment2, shift_px: f32) -> (Point2, Point2) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::uncertainty::test_observation::{observation, perturbed};
-
-    /// Signed distance from the first segment's line to the second segment's ends.
-    fn offsets_px(before: &Segment2, after: &Segment2) -> [f32; 2] {
-        let (start, end) = (before.start(), before.end());
-        let normal = Point2::new((start.y - end.y) / before.length_px(), (end.x - start.x) / before.length_px());
-        [after.start(), after.end()].map(|point| (point.x - start.x) * normal.x + (point.y - start.y) * normal.y)
-    }
+    use crate::uncertainty::test_observation::{observation, offsets_px, perturbed};
 
     #[test]
     fn zero_magnitude_is_the_identity() {

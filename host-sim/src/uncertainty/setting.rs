@@ -10,6 +10,22 @@ pub trait SourceSetting {
 
     /// How strongly it acts, in the unit of its facts; 0 changes nothing.
     fn magnitude(&self) -> f64;
+
+    /// Its magnitude and the other numbers of its setting.
+    fn numbers(&self) -> Vec<SourceNumber>;
+}
+
+/// One number of a source's setting.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SourceNumber {
+    /// Name of its key in the source's table.
+    pub key: &'static str,
+    /// What it is set to.
+    pub value: f64,
+    /// What it is unless configured.
+    pub default: f64,
+    /// Least and greatest value allowed.
+    pub legal_range: (f64, f64),
 }
 
 /// The unchanging part of a source: its row in tables and its place among the random streams.
@@ -40,6 +56,10 @@ pub struct SourceFacts {
 }
 
 /// When a source acts.
+///
+/// Whatever happens to an image happens while learning too. What acts in looks alone is what differs from the day of
+/// learning, or what a careful learner keeps out: its map is made standing level, along headings that many readings and
+/// odometry agree on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ActsIn {
     /// While the world is learned.
@@ -50,13 +70,27 @@ pub enum ActsIn {
     Both,
 }
 
+impl std::fmt::Display for ActsIn {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Learning => "learning",
+            Self::Looks => "looks",
+            Self::Both => "learning and looks",
+        })
+    }
+}
+
 /// Declares the value of a source: its switch and magnitude with the defaults of its facts, fields of its own with
-/// theirs, and the [`SourceSetting`] that reads them.
+/// theirs (numbers with their legal range: `pub share: f64 in 0.0 to 1.0 = 0.5,`), and the [`SourceSetting`] that reads
+/// them.
 macro_rules! source {
     (
         $(#[doc = $doc:literal])*
         pub struct $source:ident: $facts:ident {
-            $($(#[doc = $field_doc:literal])* pub $field:ident: $kind:ty = $default:expr,)*
+            $(
+                $(#[doc = $field_doc:literal])*
+                pub $field:ident: $kind:ident $(in $low:literal to $high:literal)? = $default:expr,
+            )*
         }
     ) => {
         $(#[doc = $doc])*
@@ -91,6 +125,23 @@ macro_rules! source {
 
             fn magnitude(&self) -> f64 {
                 self.magnitude
+            }
+
+            fn numbers(&self) -> Vec<$crate::uncertainty::SourceNumber> {
+                vec![
+                    $crate::uncertainty::SourceNumber {
+                        key: "magnitude",
+                        value: self.magnitude,
+                        default: $facts.default_magnitude,
+                        legal_range: $facts.legal_range,
+                    },
+                    $($($crate::uncertainty::SourceNumber {
+                        key: stringify!($field),
+                        value: self.$field,
+                        default: $default,
+                        legal_range: ($low, $high),
+                    },)?)*
+                ]
             }
         }
     };

@@ -1,25 +1,28 @@
 //! The configured sources: which act, how strongly, in which order, on which random draws.
 //!
-//! In a scenario file each source is a table of its own; what is not said stays at the paper's default:
+//! In a scenario file each source is a table of its own; what is not said stays at its default:
 //!
 //! ```toml
 //! [uncertainty]
 //! lateral_edge_shift = { enabled = true, magnitude = 3.0, is_common = true }
 //! edge_detection_loss = { magnitude = 0.3125 }
 //! stereo_match = { enabled = false }
+//! polarity_flips = { enabled = true }
 //! ```
 
 use super::{
-    ActsIn, EdgeDetectionLoss, EpipolarRemoval, GeometricApproximation, LateralEdgeShift, SourceFacts, StereoMatch,
-    UncertaintySource,
+    ActsIn, CameraTilt, Clutter, Compass, EdgeDetectionLoss, EpipolarRemoval, GeometricApproximation, ImageNoise,
+    LateralEdgeShift, PolarityFlips, SourceFacts, SourceNumber, SourceSetting, StereoMatch, UncertaintySource,
 };
 use crate::camera::StereoObservation;
 use crate::random::Stream;
+use edgeloc::geometry::Heading;
+use edgeloc::localize::HeadingPrior;
 use serde::{Deserialize, Serialize};
 
 macro_rules! list_of_sources {
     ($($key:ident: $source:ident,)*) => {
-        /// The uncertainty sources in the order in which they act; by default all of the paper's at its magnitudes.
+        /// The uncertainty sources in the order in which they act; by default the paper's at its magnitudes.
         #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
         #[serde(try_from = "UncheckedSources")]
         pub struct Sources {
@@ -61,11 +64,16 @@ macro_rules! list_of_sources {
 }
 
 list_of_sources! {
+    clutter: Clutter,
+    camera_tilt: CameraTilt,
+    polarity_flips: PolarityFlips,
     lateral_edge_shift: LateralEdgeShift,
     edge_detection_loss: EdgeDetectionLoss,
     geometric_approximation: GeometricApproximation,
+    image_noise: ImageNoise,
     epipolar_removal: EpipolarRemoval,
     stereo_match: StereoMatch,
+    compass: Compass,
 }
 
 impl Sources {
@@ -78,34 +86,54 @@ impl Sources {
         }
     }
 
-    /// The sources themselves, if every magnitude is legal.
+    /// What the compass tells of a heading in the look of `key`; exact when its error is off.
+    #[must_use]
+    pub fn compass_reading(&self, heading: Heading, key: &NoiseKey) -> HeadingPrior {
+        if !self.compass.enabled {
+            return HeadingPrior::exact(heading);
+        }
+        let facts = self.compass.facts();
+        self.compass.read(heading, &mut key.of_trial().stream(facts), &mut key.stream(facts))
+    }
+
+    /// The sources themselves, if every magnitude and every other number is legal.
     ///
     /// # Errors
-    /// When a magnitude, even of a disabled source, is not a number or outside its source's legal range.
+    /// When a number, even of a disabled source, is none or outside its legal range.
     pub fn checked(self) -> Result<Self, SourceError> {
         for source in self.pipeline() {
-            let (low, high) = source.facts().legal_range;
-            if !(low..=high).contains(&source.magnitude()) {
-                return Err(SourceError { facts: source.facts(), magnitude: source.magnitude() });
+            for number in source.numbers() {
+                let (low, high) = number.legal_range;
+                if !(low..=high).contains(&number.value) {
+                    return Err(SourceError { facts: source.facts(), number });
+                }
             }
         }
         Ok(self)
     }
 }
 
-/// A magnitude is outside the legal range of its source.
+/// A number of a source is outside its legal range.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error(
-    "{key}.magnitude = {magnitude} is not legal: {name} takes {low} to {high} {unit} (default {default}); \
+    "{key}.{number} = {value} is not legal: {name} takes {low} to {high}{unit} (default {default}); \
      to switch it off write {key}.enabled = false",
-    key = facts.key, name = facts.name, unit = facts.unit, default = facts.default_magnitude,
-    low = facts.legal_range.0, high = facts.legal_range.1
+    key = facts.key, number = number.key, value = number.value, name = facts.name, default = number.default,
+    low = number.legal_range.0, high = number.legal_range.1, unit = self.unit()
 )]
 pub struct SourceError {
     /// The source.
     pub facts: &'static SourceFacts,
-    /// The magnitude asked for.
-    pub magnitude: f64,
+    /// The number asked for.
+    pub number: SourceNumber,
+}
+
+impl SourceError {
+    /// The unit of the number after a space; a magnitude has that of its source, others have it in their name.
+    #[must_use]
+    pub fn unit(&self) -> String {
+        if self.number.key == "magnitude" { format!(" {}", self.facts.unit) } else { String::new() }
+    }
 }
 
 /// Which draw of the noise: one look of one trial, or one view of one map.
@@ -120,6 +148,7 @@ pub struct NoiseKey {
 impl NoiseKey {
     const LOOK: &str = "psi-look";
     const VIEW: &str = "psi-view";
+    const TRIAL: &str = "psi-all";
 
     /// The noise of one look of a trial, looks counted from 0. Trials of one index share it wherever they start, as
     /// common random numbers.
@@ -132,6 +161,11 @@ impl NoiseKey {
     #[must_use]
     pub const fn view(seed: u64, map_index: u64, node_index: u32, view_index: u16) -> Self {
         Self { seed, purpose: Self::VIEW, index: map_index, part: (node_index as u64) << 16 | view_index as u64 }
+    }
+
+    /// The key of what is drawn once for all looks of this look's trial.
+    const fn of_trial(&self) -> Self {
+        Self { seed: self.seed, purpose: Self::TRIAL, index: self.index, part: 0 }
     }
 
     fn is_of(&self, acts_in: ActsIn) -> bool {
@@ -151,8 +185,9 @@ impl NoiseKey {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::uncertainty::SourceSetting;
+    use crate::camera::StereoFeature;
     use crate::uncertainty::test_observation::observation;
+    use edgeloc::geometry::{Polarity, Segment2};
 
     const KEY: NoiseKey = NoiseKey::view(9, 4, 0, 0);
 
@@ -167,22 +202,96 @@ mod tests {
         assert_eq!(applied(&Sources::none()), observation(300));
     }
 
+    /// Nothing but the source called `key`, on, with `magnitude` or its default one.
+    fn alone(key: &str, magnitude: Option<f64>) -> Sources {
+        let mut table = toml::Table::try_from(Sources::none()).expect("sources are a table of tables");
+        let source = table[key].as_table_mut().expect("a source is a table");
+        source.insert("enabled".to_owned(), true.into());
+        if let Some(magnitude) = magnitude {
+            source.insert("magnitude".to_owned(), magnitude.into());
+        }
+        table.try_into().expect("legal sources")
+    }
+
+    /// Those of both, first and second alike.
+    fn together(first: &Sources, second: &Sources) -> Sources {
+        let read = |sources: &Sources| toml::Table::try_from(sources).expect("sources are a table of tables");
+        let mut table = read(first);
+        let is_on = |source: &toml::Value| source["enabled"].as_bool() == Some(true);
+        table.extend(read(second).into_iter().filter(|(_, source)| is_on(source)));
+        table.try_into().expect("legal sources")
+    }
+
+    fn keys() -> Vec<&'static str> {
+        Sources::none().pipeline().iter().map(|source| source.facts().key).collect()
+    }
+
     #[test]
-    fn switching_one_source_off_leaves_the_draws_of_the_others() {
-        // Stereo mismatches alone and after a lateral shift displace the same features by the same disparity.
-        let error_px = |sources: &Sources| {
-            let observation = applied(sources);
-            let disparity = |index: usize| {
-                let feature = &observation.features[index];
-                feature.left[0].start().x - feature.right[0].start().x - 20.0
+    fn magnitude_zero_is_the_identity_for_every_source() {
+        for key in keys() {
+            for noise in [KEY, NoiseKey::look(9, 4, 0)] {
+                let mut observation = observation(300);
+                alone(key, Some(0.0)).apply(&mut observation, &noise);
+                assert_eq!(observation, applied(&Sources::none()), "{key}");
+            }
+        }
+    }
+
+    #[test]
+    fn switching_any_source_off_leaves_the_draws_of_the_others() {
+        // The draws of a flip, a false match, a whole loss and clutter can be seen whatever else was done to a feature.
+        let look = NoiseKey::look(9, 4, 0);
+        let marks = |sources: &Sources, key: &str| {
+            let noise = if key == "stereo_match" { KEY } else { look };
+            let mut observation = observation(300);
+            sources.apply(&mut observation, &noise);
+            let mark = |feature: &StereoFeature| match (key, &feature.left[..]) {
+                ("polarity_flips", [piece, ..]) => Some(piece.polarity() == Polarity::RightBrighter),
+                ("clutter", _) => Some(!feature.is_matchable),
+                ("edge_detection_loss", pieces) => Some(pieces.is_empty()),
+                ("stereo_match", [left, ..]) => {
+                    // Other sources move end points by far less than most of these matches.
+                    feature.right.first().map(|right| (left.start().x - right.start().x - 20.0).abs() > 6.0)
+                }
+                _ => None,
             };
-            (0..300).map(disparity).collect::<Vec<_>>()
+            observation.features.iter().map(mark).collect::<Vec<_>>()
         };
-        let alone = Sources { stereo_match: StereoMatch { enabled: true, magnitude: 0.1 }, ..Sources::none() };
-        let with_shift = Sources { lateral_edge_shift: LateralEdgeShift::default(), ..alone.clone() };
-        let (alone, with_shift) = (error_px(&alone), error_px(&with_shift));
-        assert!(alone.iter().any(|error_px| error_px.abs() > 1.0));
-        assert!(alone.iter().zip(&with_shift).all(|(a, b)| (a - b).abs() < 1e-3));
+        for (key, others) in [
+            ("polarity_flips", &["lateral_edge_shift", "geometric_approximation", "edge_detection_loss"][..]),
+            ("clutter", &["camera_tilt", "polarity_flips", "lateral_edge_shift", "edge_detection_loss", "image_noise"]),
+            ("edge_detection_loss", &["clutter", "polarity_flips", "lateral_edge_shift", "geometric_approximation"]),
+            ("stereo_match", &["lateral_edge_shift", "geometric_approximation", "epipolar_removal"]),
+        ] {
+            let only = alone(key, None);
+            let expected = marks(&only, key);
+            assert!(expected.contains(&Some(true)) && expected.contains(&Some(false)), "{key}");
+            for other in others {
+                let found = marks(&together(&only, &alone(other, None)), key);
+                let differ = expected.iter().zip(&found).filter(|(a, b)| b.is_some() && a != b).count();
+                assert_eq!(differ, 0, "{key} with {other}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_feature_broken_by_gaps_leaves_the_draws_of_the_next() {
+        // With gaps there are more end points to misplace; the first of each feature is misplaced all the same.
+        let (misplaced, gaps) = (alone("geometric_approximation", None), alone("edge_detection_loss", None));
+        let before = observation(300);
+        let (without, with) = (applied(&misplaced), applied(&together(&misplaced, &gaps)));
+        let only_gaps = applied(&gaps);
+        let mut compared = 0;
+        for index in 0..300 {
+            let start = |observation: &StereoObservation| observation.features[index].left.first().map(Segment2::start);
+            if let (Some(broken), Some(found)) = (start(&only_gaps), start(&with)) {
+                let (clean, moved) = (start(&before).expect("seen"), start(&without).expect("seen"));
+                let (dx, dy) = (moved.x - clean.x, moved.y - clean.y);
+                assert!((found.x - broken.x - dx).abs() < 1e-3 && (found.y - broken.y - dy).abs() < 1e-3);
+                compared += 1;
+            }
+        }
+        assert!(compared > 250);
     }
 
     #[test]
@@ -239,7 +348,7 @@ mod tests {
         )
         .expect("legal sources");
         let expected = Sources {
-            edge_detection_loss: EdgeDetectionLoss { enabled: true, magnitude: 0.25 },
+            edge_detection_loss: EdgeDetectionLoss { magnitude: 0.25, ..EdgeDetectionLoss::default() },
             stereo_match: StereoMatch { enabled: false, magnitude: 0.01 },
             lateral_edge_shift: LateralEdgeShift { enabled: true, magnitude: 2.0, is_common: false },
             ..Sources::default()
@@ -259,5 +368,6 @@ mod tests {
         assert!(error_of("stereo_match = { magnitude = -0.01 }").contains("stereo_match"));
         assert!(error_of("stereo_mismatch = { enabled = true }").contains("stereo_mismatch"));
         assert!(error_of("stereo_match = { magnitud = 0.01 }").contains("magnitud"));
+        assert!(error_of("compass = { bias_share = 1.5 }").contains("compass.bias_share = 1.5 is not legal"));
     }
 }

@@ -9,7 +9,7 @@
 //! the whole disparity error goes to the right pieces. Only the 3-D segment is affected.
 
 use super::setting::source;
-use super::{ActsIn, SourceFacts, UncertaintySource};
+use super::{ActsIn, SourceFacts, UncertaintySource, for_each_feature};
 use crate::camera::{StereoObservation, move_pieces};
 use crate::random::Stream;
 use edgeloc::geometry::Point2;
@@ -38,15 +38,13 @@ source! {
 
 impl UncertaintySource for StereoMatch {
     fn apply(&self, observation: &mut StereoObservation, stream: &mut Stream) {
-        for feature in &mut observation.features {
-            // Drawn for every feature, so that which ones are matchable does not move the draws of the others.
-            let is_mismatched = stream.chance(self.magnitude);
-            let error_px = stream.uniform(-MAX_DISPARITY_ERROR_PX, MAX_DISPARITY_ERROR_PX) as f32;
-            if is_mismatched && feature.is_matchable {
+        for_each_feature(observation, stream, |feature, stream| {
+            if feature.is_matchable && stream.chance(self.magnitude) {
+                let error_px = stream.uniform(-MAX_DISPARITY_ERROR_PX, MAX_DISPARITY_ERROR_PX) as f32;
                 let displaced = |point: Point2| Point2::new(point.x - error_px, point.y);
                 move_pieces(&mut feature.right, |piece| (displaced(piece.start()), displaced(piece.end())));
             }
-        }
+        });
     }
 }
 

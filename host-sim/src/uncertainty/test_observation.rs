@@ -36,3 +36,10 @@ pub(super) fn perturbed(source: &dyn UncertaintySource, count: usize) -> StereoO
 pub(super) fn unit_stream() -> Stream {
     Stream::new(2, "test", 0, 0)
 }
+
+/// Signed distance from the first segment's line to the second segment's ends.
+pub(super) fn offsets_px(before: &Segment2, after: &Segment2) -> [f32; 2] {
+    let (start, end) = (before.start(), before.end());
+    let normal = Point2::new((start.y - end.y) / before.length_px(), (end.x - start.x) / before.length_px());
+    [after.start(), after.end()].map(|point| (point.x - start.x) * normal.x + (point.y - start.y) * normal.y)
+}
