@@ -6,7 +6,8 @@ use edgeloc::pgh::{DistanceKind, PghShape};
 use edgeloc_firmware::SCENE_CAPACITY;
 use edgeloc_sim::random::Stream;
 use edgeloc_sim::uncertainty::{
-    EdgeDetectionLoss, EpipolarRemoval, GeometricApproximation, LateralEdgeShift, Sources, StereoMatch,
+    CameraTilt, Clutter, EdgeDetectionLoss, EpipolarRemoval, GeometricApproximation, ImageNoise, LateralEdgeShift,
+    PolarityFlips, Sources, StereoMatch,
 };
 
 use super::looks_writer::{Attempt, GoldenLook};
@@ -177,7 +178,7 @@ fn with_polarity() -> LocalizerConfig {
     LocalizerConfig { shape, ..LocalizerConfig::paper() }
 }
 
-/// No source, each alone, and all of them.
+/// No source, each of the paper's alone, all of them, and those that are off by default together.
 fn source_settings() -> Vec<(&'static str, Sources)> {
     let none = Sources::none;
     vec![
@@ -188,6 +189,16 @@ fn source_settings() -> Vec<(&'static str, Sources)> {
         ("epipolar removal", Sources { epipolar_removal: EpipolarRemoval::default(), ..none() }),
         ("stereo match", Sources { stereo_match: StereoMatch::default(), ..none() }),
         ("on", Sources::default()),
+        (
+            "of our own",
+            Sources {
+                image_noise: ImageNoise { magnitude: 10.0, ..ImageNoise::default() },
+                polarity_flips: PolarityFlips { enabled: true, ..PolarityFlips::default() },
+                clutter: Clutter { enabled: true, ..Clutter::default() },
+                camera_tilt: CameraTilt { enabled: true, ..CameraTilt::default() },
+                ..none()
+            },
+        ),
     ]
 }
 
@@ -208,13 +219,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_source_has_its_turn_alone() {
+    fn every_source_of_images_has_its_turn() {
         let settings = source_settings();
-        let source_count = Sources::none().pipeline().len();
-        assert_eq!(settings.len(), source_count + 2);
-        for index in 0..source_count {
-            let is_on = |sources: &Sources| sources.pipeline()[index].is_enabled();
-            assert_eq!(settings.iter().filter(|(_, sources)| is_on(sources)).count(), 2);
+        // The compass tells headings; golden looks have a perfect one.
+        let of_images =
+            Sources::none().pipeline().iter().map(|source| source.facts().key != "compass").collect::<Vec<_>>();
+        for (index, is_of_images) in of_images.into_iter().enumerate() {
+            let acts = |sources: &Sources| {
+                let source = sources.pipeline()[index];
+                source.is_enabled() && source.magnitude() > 0.0
+            };
+            assert_eq!(settings.iter().any(|(_, sources)| acts(sources)), is_of_images, "source {index}");
         }
     }
 }
