@@ -188,6 +188,7 @@ fn span_in(table: &DeTable<'_>, path: &[&str]) -> Option<Range<usize>> {
 mod tests {
     use super::*;
     use crate::scenario::Start;
+    use crate::uncertainty::PolarityFlips;
     use std::path::PathBuf;
 
     fn load_text(text: &str, settings: &[&str]) -> Result<Scenario, ScenarioError> {
@@ -201,6 +202,22 @@ mod tests {
     #[test]
     fn the_bundled_paper_setting_states_exactly_the_default() {
         assert_eq!(Scenario::load("paper", &[]).expect("bundled"), Scenario::default());
+    }
+
+    #[test]
+    fn the_bundled_edgeloc_is_the_papers_with_one_edge_in_twenty_flipped() {
+        let mut expected = Scenario { name: "edgeloc".to_owned(), ..Scenario::default() };
+        expected.uncertainty.polarity_flips = PolarityFlips { enabled: true, magnitude: 0.05 };
+        assert_eq!(Scenario::load("edgeloc", &[]).expect("bundled"), expected);
+    }
+
+    #[test]
+    fn the_bundled_paper_has_its_own_sources_on_and_ours_off() {
+        let paper = Scenario::load("paper", &[]).expect("bundled").uncertainty;
+        for source in paper.pipeline() {
+            let is_ours = source.facts().citation == "ours";
+            assert_eq!(source.is_enabled(), !is_ours, "{}", source.facts().key);
+        }
     }
 
     #[test]

@@ -1,4 +1,5 @@
-//! The bundled scenarios: `paper`, the paper's setting in the bundled office and the base of every other scenario, and a quick one.
+//! The bundled scenarios: `paper`, the paper's setting in the bundled office and the base of every other scenario;
+//! `edgeloc`, the same with what a robot of ours has to expect; and a quick one.
 
 /// A bundled scenario.
 #[derive(Debug, Clone, Copy)]
@@ -19,8 +20,13 @@ pub const PRESETS: &[Preset] = &[
         text: include_str!("../../scenarios/paper.toml"),
     },
     Preset {
+        name: "edgeloc",
+        summary: "the same, and 5 % of the edges of each look bright on the other side than learned",
+        text: include_str!("../../scenarios/edgeloc.toml"),
+    },
+    Preset {
         name: "smoke",
-        summary: "the same on a small scale, a few seconds: does everything work?",
+        summary: "the paper's on a small scale, a few seconds: does everything work?",
         text: include_str!("../../scenarios/smoke.toml"),
     },
 ];
