@@ -60,6 +60,7 @@ fn the_help_of_every_verb_has_an_example() {
         &["replay"],
         &["report"],
         &["power"],
+        &["sources"],
     ] {
         let help = done(folder.path(), &[verb, &["--help"]].concat());
         let example = format!("  edgeloc {}", verb.join(" "));
@@ -182,6 +183,28 @@ fn a_world_is_generated_described_drawn_learned_and_localised_in() {
     for drawing in ["plan.svg", "eye.svg"] {
         let text = std::fs::read_to_string(path.join(drawing)).expect("a drawing");
         assert!(text.starts_with("<svg") && !text.contains("NaN"), "{drawing}");
+    }
+}
+
+#[test]
+fn every_uncertainty_source_is_listed_as_the_scenario_sets_it() {
+    let folder = folder();
+    let changed = ["sources", "edgeloc", "--set", "uncertainty.edge_detection_loss.magnitude=0.25"];
+    let text = done(folder.path(), &changed);
+    let sources = json(&done(folder.path(), &[&changed[..], &["--format", "json"]].concat()));
+    assert_documented(folder.path(), &["sources"], &sources);
+    for source in sources.as_array().expect("a list") {
+        let key = source["key"].as_str().expect("a name");
+        // Long words are broken in narrow columns, so look for what they begin with.
+        assert!(text.contains(key.split('_').next().expect("a word")), "{key} is not in {text}");
+        let set = |name: &str| {
+            let mut keys = source["set"].as_array().expect("a list").iter();
+            keys.find(|entry| entry["key"] == name).map(|entry| entry["value"].clone())
+        };
+        let magnitude = if key == "edge_detection_loss" { 0.25.into() } else { source["default"]["magnitude"].clone() };
+        assert_eq!(set("magnitude"), Some(magnitude), "{key}");
+        let is_on = key == "polarity_flips" || source["default"]["enabled"] == true;
+        assert_eq!(set("enabled"), Some(is_on.into()), "{key}");
     }
 }
 

@@ -15,6 +15,7 @@ mod replay;
 mod report;
 mod run;
 mod scenario_args;
+mod sources;
 mod summary_table;
 mod trials;
 mod world;
@@ -58,6 +59,7 @@ enum Verb {
     Replay(replay::Replay),
     Report(report::Report),
     Power(power::Power),
+    Sources(sources::Sources),
 }
 
 /// Reads the command line and does what it asks.
@@ -74,6 +76,7 @@ pub(crate) fn main() -> ExitCode {
         Verb::Replay(verb) => verb.execute(),
         Verb::Report(verb) => verb.execute(),
         Verb::Power(verb) => verb.execute(),
+        Verb::Sources(verb) => verb.execute(),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
