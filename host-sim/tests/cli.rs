@@ -52,6 +52,7 @@ fn the_help_of_every_verb_has_an_example() {
         &["world", "import"],
         &["world", "info"],
         &["world", "view"],
+        &["world", "visibility"],
         &["learn"],
         &["map"],
         &["map", "info"],

@@ -28,6 +28,32 @@ impl Drop for Wheel {
     }
 }
 
+/// A bar of `count` steps, until it is dropped.
+pub(super) fn bar(count: usize, what: &'static str) -> Bar {
+    let style = ProgressStyle::with_template("{bar:24} {pos}/{len} {msg}, {eta} to go");
+    let bar = ProgressBar::new(count as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar.enable_steady_tick(Duration::from_millis(200));
+    Bar { bar: bar.with_message(what) }
+}
+
+/// See [`bar`].
+pub(super) struct Bar {
+    bar: ProgressBar,
+}
+
+impl Bar {
+    /// Counts a step.
+    pub(super) fn step(&self) {
+        self.bar.inc(1);
+    }
+}
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
+
 /// The progress of a run.
 pub(super) struct TrialProgress {
     bar: ProgressBar,

@@ -76,14 +76,24 @@ pub(super) fn open(path: &std::path::Path) -> Result<(RunFolder, RunResults)> {
 pub(super) fn world_of(results: &RunResults) -> Result<WireframeWorld> {
     let Scenario { world: choice, .. } = &results.scenario;
     let world = worlds::open(choice)?;
-    let (now, then) = (WorldFacts::new(&world, choice).checksum, &results.manifest.world.checksum);
-    if now == *then {
-        Ok(world)
-    } else {
-        Err(miette!(
+    let (now, then) = (WorldFacts::new(&world, choice), &results.manifest.world);
+    if now.checksum != then.checksum {
+        return Err(miette!(
             help = "bring back the world file of the run, or use the version of the program that made it",
-            "the world {:?} has changed since the run: its checksum was {then}, it is {now}",
-            world.name
-        ))
+            "the world {:?} has changed since the run: its checksum was {}, it is {}",
+            world.name,
+            then.checksum,
+            now.checksum
+        ));
+    }
+    match (&now.visibility, &then.visibility) {
+        (Some(now), Some(then)) if now.checksum != then.checksum => Err(miette!(
+            help = "bring back the file as it was, or run the scenario again",
+            "what is visible in the world has changed since the run: the checksum of {} was {}, it is {}",
+            now.file.as_deref().unwrap_or("the viewpoints"),
+            then.checksum,
+            now.checksum
+        )),
+        _ => Ok(world),
     }
 }

@@ -3,7 +3,7 @@
 use super::console;
 use super::world::file_stem;
 use clap::Args;
-use edgeloc_sim::scenario::{IllegalValue, Scenario, ScenarioError, Setting, WorldChoice};
+use edgeloc_sim::scenario::{Building, IllegalValue, Scenario, ScenarioError, Setting};
 use miette::{Result, miette};
 use std::path::PathBuf;
 
@@ -66,7 +66,7 @@ impl ScenarioChanges {
                 scenario.name = format!("{}-{}", scenario.name, file_stem(&building));
                 scenario.name.truncate(Scenario::MAX_NAME_BYTES);
             }
-            scenario.world = WorldChoice::File { file };
+            scenario.world.building = Building::File { file };
         }
         if self.trials.is_some() {
             scenario.rows.iter_mut().for_each(|row| row.trials = None);

@@ -1,7 +1,7 @@
 //! Where a run comes from: program, command, machine, world, time. `manifest.json` is written last, so a folder that
 //! has it is complete.
 
-use crate::scenario::{Scenario, WorldChoice};
+use crate::scenario::{Building, Scenario, VisibilityChoice, WorldChoice};
 use crate::world::WireframeWorld;
 use serde::{Deserialize, Serialize};
 
@@ -46,6 +46,20 @@ pub struct WorldFacts {
     /// Triangles of the surfaces.
     pub triangles: usize,
     /// CRC-64 of edges and surfaces, hexadecimal.
+    pub checksum: String,
+    /// The view-dependency file, unless the surfaces said what is visible.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub visibility: Option<VisibilityFacts>,
+}
+
+/// Which reference viewpoints said what is visible.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct VisibilityFacts {
+    /// Their file, when the scenario names one.
+    pub file: Option<String>,
+    /// How many they are.
+    pub viewpoints: usize,
+    /// CRC-64 of the file as the program writes it, hexadecimal.
     pub checksum: String,
 }
 
@@ -94,17 +108,27 @@ impl WorldFacts {
     /// The facts of `world`, chosen by `choice`.
     #[must_use]
     pub fn new(world: &WireframeWorld, choice: &WorldChoice) -> Self {
-        let file = match choice {
-            WorldChoice::Office { .. } => None,
-            WorldChoice::File { file } => Some(file.display().to_string()),
+        let file = match &choice.building {
+            Building::Office { .. } => None,
+            Building::File { file } => Some(file.display().to_string()),
         };
+        let views_file = match &choice.visibility {
+            VisibilityChoice::Surfaces => None,
+            VisibilityChoice::File(file) => Some(file.display().to_string()),
+        };
+        let visibility = world.reference_viewpoints.as_ref().map(|viewpoints| VisibilityFacts {
+            file: views_file,
+            viewpoints: viewpoints.viewpoints().len(),
+            checksum: format!("{:016x}", viewpoints.checksum()),
+        });
         Self {
             name: world.name.clone(),
             origin: world.origin.clone(),
             file,
             edges: world.edges.len(),
             triangles: world.surfaces.triangles.len(),
-            checksum: checksum(world),
+            checksum: format!("{:016x}", world.checksum()),
+            visibility,
         }
     }
 }
@@ -120,45 +144,5 @@ impl HostFacts {
             available_threads: std::thread::available_parallelism().map_or(1, usize::from),
             used_threads,
         }
-    }
-}
-
-/// CRC-64 of edges and surfaces, bit for bit: worlds of the same sum give the same trials.
-fn checksum(world: &WireframeWorld) -> String {
-    const CRC: crc::Crc<u64> = crc::Crc::<u64>::new(&crc::CRC_64_XZ);
-    let mut digest = CRC.digest();
-    let mut point = |point: &edgeloc::geometry::Point3| {
-        for coordinate in [point.x, point.y, point.z] {
-            digest.update(&coordinate.to_le_bytes());
-        }
-    };
-    for edge in &world.edges {
-        point(&edge.start);
-        point(&edge.end);
-    }
-    world.surfaces.vertices.iter().for_each(&mut point);
-    for edge in &world.edges {
-        digest.update(&[edge.polarity as u8]);
-    }
-    for corner in world.surfaces.triangles.iter().flatten() {
-        digest.update(&corner.to_le_bytes());
-    }
-    format!("{:016x}", digest.finalize())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::report::sample;
-
-    #[test]
-    fn the_checksum_sees_every_part_of_a_world() {
-        let world = sample::run().world;
-        let (mut moved, mut flipped, mut covered) = (world.clone(), world.clone(), world.clone());
-        moved.edges[3].end.z += 0.001;
-        flipped.edges[3].polarity = flipped.edges[3].polarity.flipped();
-        covered.surfaces.triangles.push([0, 1, 2]);
-        let sums = [&world, &moved, &flipped, &covered].map(checksum);
-        assert!((1..4).all(|other| sums[other] != sums[0]), "{sums:?}");
     }
 }

@@ -4,7 +4,7 @@ use crate::monte_carlo::{Outcome, TrialRecord};
 use crate::random::Stream;
 use crate::report::{FreeCells, Manifest, RunResults, RunTimings, Summary, WorldFacts};
 use crate::scenario::{Scenario, Start};
-use crate::world::{Surfaces, WireframeWorld};
+use crate::world::WireframeWorld;
 use edgeloc::geometry::{Point2, Point3, Polarity, Segment3};
 use std::time::Duration;
 
@@ -100,5 +100,5 @@ fn world() -> WireframeWorld {
             rectangle(x, y, x + 1.2, y + 0.6);
         }
     }
-    WireframeWorld { name: "hall".to_owned(), origin: "made up".to_owned(), edges, surfaces: Surfaces::default() }
+    WireframeWorld { name: "hall".to_owned(), origin: "made up".to_owned(), edges, ..WireframeWorld::default() }
 }

@@ -1,10 +1,11 @@
 //! The legal range of every value of a scenario.
 
 use super::error::IllegalValue;
-use super::{LocalizerSettings, Scenario, WorldChoice};
+use super::{Building, LocalizerSettings, Scenario, VisibilityChoice};
 use edgeloc::geometry::StereoRig;
 use std::fmt::Display;
 use std::ops::RangeInclusive;
+use std::path::Path;
 
 impl Scenario {
     /// Longest name of a scenario or row, in bytes.
@@ -51,10 +52,18 @@ impl Scenario {
     }
 
     fn check_world(&self) -> Result<(), IllegalValue> {
-        let WorldChoice::File { file } = &self.world else { return Ok(()) };
-        require(file.to_str().is_some(), "world.file", &file.display(), "a path in UTF-8", || {
-            "the scenario of a run is written as text; rename the file or its folder".to_owned()
-        })
+        let is_text = |key, file: &Path| {
+            require(file.to_str().is_some(), key, &file.display(), "a path in UTF-8", || {
+                "the scenario of a run is written as text; rename the file or its folder".to_owned()
+            })
+        };
+        if let Building::File { file } = &self.world.building {
+            is_text("world.file", file)?;
+        }
+        match &self.world.visibility {
+            VisibilityChoice::File(file) => is_text("world.visibility", file),
+            VisibilityChoice::Surfaces => Ok(()),
+        }
     }
 
     fn check_rig(&self) -> Result<StereoRig, IllegalValue> {
@@ -159,6 +168,7 @@ fn require(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scenario::WorldChoice;
 
     fn refused(change: impl FnOnce(&mut Scenario)) -> String {
         let mut scenario = Scenario::default();
@@ -193,6 +203,7 @@ mod tests {
     fn a_world_path_that_no_text_can_hold_is_refused() {
         use std::os::unix::ffi::OsStrExt;
         let file = std::path::PathBuf::from(std::ffi::OsStr::from_bytes(b"a\xff.edgeworld"));
-        assert_eq!(refused(|s| s.world = WorldChoice::File { file }), "world.file");
+        assert_eq!(refused(|s| s.world = WorldChoice::file(file.clone())), "world.file");
+        assert_eq!(refused(|s| s.world.visibility = VisibilityChoice::File(file.clone())), "world.visibility");
     }
 }

@@ -1,6 +1,6 @@
 //! Reading a scenario: bundled values < file < `--set`, and writing it back whole.
 
-use super::{Preset, Scenario, ScenarioError, WorldChoice, preset::PRESETS};
+use super::{Preset, Scenario, ScenarioError, preset::PRESETS};
 use miette::{NamedSource, SourceSpan};
 use std::io::Read;
 use std::ops::Range;
@@ -14,7 +14,8 @@ const MAX_FILE_BYTES: u64 = 1 << 20;
 impl Scenario {
     /// The scenario called `name` (a file, else a bundled one) with `settings` (`key=value`) on top, checked.
     ///
-    /// A relative path of a world in a scenario file counts from that file's folder and is made absolute.
+    /// Relative paths of a world and its view-dependency file count from the scenario file's folder, those of a setting
+    /// from the current one; they are made absolute.
     ///
     /// # Errors
     /// When there is no such scenario, its text or a setting can't be understood, or a value is not legal.
@@ -34,6 +35,7 @@ impl Scenario {
         for setting in settings {
             scenario = scenario.with_setting(setting)?;
         }
+        scenario.world.complete_paths(Path::new(""));
         scenario.check().map_err(|illegal| {
             // The caret helps only when the file, not a setting, gave the value.
             let is_set = settings.iter().any(|setting| setting.split('=').next() == Some(&illegal.key));
@@ -86,12 +88,7 @@ impl Scenario {
         {
             self.name = stem.to_string_lossy().into_owned();
         }
-        if let WorldChoice::File { file } = &mut self.world
-            && file.is_relative()
-        {
-            let joined = path.parent().unwrap_or(Path::new("")).join(&*file);
-            *file = std::path::absolute(&joined).unwrap_or(joined);
-        }
+        self.world.complete_paths(path.parent().unwrap_or(Path::new("")));
     }
 }
 
@@ -124,7 +121,7 @@ fn parse_value(value: &str) -> toml::Value {
 fn make_room(root: &mut toml::Value, key: &str) {
     let Some(world) = root.get_mut("world").and_then(toml::Value::as_table_mut) else { return };
     match key {
-        "world.file" => world.retain(|key, _| key == "file"),
+        "world.file" => world.retain(|key, _| key == "file" || key == "visibility"),
         "world.kind" => world.retain(|key, _| key != "file"),
         _ => {}
     }
@@ -187,7 +184,7 @@ fn span_in(table: &DeTable<'_>, path: &[&str]) -> Option<Range<usize>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::Start;
+    use crate::scenario::{Building, Start, VisibilityChoice, WorldChoice};
     use crate::uncertainty::PolarityFlips;
     use std::path::PathBuf;
 
@@ -253,17 +250,31 @@ mod tests {
     #[test]
     fn a_world_is_a_seed_or_a_file_whichever_is_set_last() {
         let file = load_text("", &["world.file=/a/b.edgeworld"]).expect("legal");
-        assert_eq!(file.world, WorldChoice::File { file: PathBuf::from("/a/b.edgeworld") });
+        assert_eq!(file.world, WorldChoice::file(PathBuf::from("/a/b.edgeworld")));
         let office = load_text("[world]\nfile = \"b.edgeworld\"", &["world.kind=office", "world.seed=4"]);
-        assert_eq!(office.expect("legal").world, WorldChoice::Office { seed: 4 });
+        assert_eq!(office.expect("legal").world, WorldChoice::office(4));
     }
 
     #[test]
     fn a_relative_world_counts_from_the_scenario_file() {
-        let WorldChoice::File { file } = load_text("[world]\nfile = \"b.edgeworld\"", &[]).expect("legal").world else {
-            panic!("a file was given");
+        let text = "[world]\nfile = \"b.edgeworld\"\nvisibility = \"b.views\"";
+        let world = load_text(text, &[]).expect("legal").world;
+        let WorldChoice { building: Building::File { file }, visibility: VisibilityChoice::File(views) } = world else {
+            panic!("files were given");
         };
         assert!(file.is_absolute() && file.ends_with("b.edgeworld"));
+        assert_eq!(file.with_file_name("b.views"), views);
+    }
+
+    #[test]
+    fn what_is_visible_say_the_surfaces_or_a_file_whatever_the_building() {
+        let settings = ["world.visibility=a.views", "world.kind=office", "world.seed=3"];
+        let scenario = load_text("[world]\nfile = \"b.edgeworld\"", &settings).expect("legal");
+        assert_eq!(scenario.world.building, Building::Office { seed: 3 });
+        let here = std::path::absolute("a.views").expect("a current folder");
+        assert_eq!(scenario.world.visibility, VisibilityChoice::File(here));
+        let back = scenario.with_setting("world.visibility=surfaces").expect("understood");
+        assert_eq!(back.world, WorldChoice::office(3));
     }
 
     #[test]
@@ -282,6 +293,7 @@ mod tests {
             ("[uncertainty.stereo_match]\nmagnitude = 2\n", &[], "stereo_match.magnitude = 2 is not legal"),
             ("", &["uncertainty.edge_detection_loss.magnitude=1"], "takes 0 to 0.3125"),
             ("[world]\nkind = \"office\"\nfile = \"x\"\n", &[], "keep one of the two"),
+            ("[world]\nvisibility = \"\"\n", &[], "write \"surfaces\", or the path"),
         ] {
             let message = load_text(text, settings).expect_err("illegal").to_string();
             assert!(message.contains(expected), "{message:?} lacks {expected:?}");

@@ -19,7 +19,7 @@ pub use localizer::{LocalizerKind, LocalizerSettings, PghSettings};
 pub use preset::{PRESETS, Preset};
 pub use rig::RigSettings;
 pub use row::{Row, Setting, Start};
-pub use world_choice::WorldChoice;
+pub use world_choice::{Building, VisibilityChoice, WorldChoice};
 
 use crate::uncertainty::Sources;
 use serde::{Deserialize, Serialize};
@@ -62,7 +62,7 @@ impl Default for Scenario {
             trials: 500,
             trials_per_map: 50,
             near_radius_m: 0.3,
-            world: WorldChoice::Office { seed: 1 },
+            world: WorldChoice::office(1),
             rig: RigSettings::default(),
             learning: LearningSettings::default(),
             localizer: LocalizerSettings::default(),

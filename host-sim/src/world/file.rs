@@ -253,6 +253,7 @@ fn decode(bytes: &[u8]) -> Result<WireframeWorld, WorldFileFault> {
                 .map(|triangle| [0, 4, 8].map(|offset| u32_at(triangle, offset)))
                 .collect(),
         },
+        reference_viewpoints: None,
     };
     check(&world)?;
     Ok(world)
@@ -313,6 +314,7 @@ mod tests {
                 vertices: vec![point(0.0, 0.0, 0.0), point(1.0, 0.0, 0.0), point(0.0, 1.0, 0.0)],
                 triangles: vec![[0, 1, 2], [2, 1, 0]],
             },
+            reference_viewpoints: None,
         }
     }
 

@@ -10,10 +10,12 @@ mod mesh;
 mod occlusion;
 pub mod office;
 mod template;
+pub mod viewpoints;
 mod visibility;
 mod wireframe;
 
 pub use free_space::{FreeSpace, FreeSpaceError, FreeSpaceOptions};
 pub use occlusion::Occluders;
+pub use viewpoints::{ReferenceViewpoint, ReferenceViewpoints};
 pub use visibility::ViewpointVisibility;
 pub use wireframe::{Surfaces, WireframeWorld};

@@ -1,14 +1,16 @@
 //! Which pieces of the world's edges are seen from one point, in any direction.
 //!
-//! The paper draws by hand which edges are visible from 236 reference points (section 4.1); with surfaces every pose
-//! has its own exact answer. An edge is cut into equal intervals of about 10 cm, a ray to the middle of each tells
+//! In one of two ways. The paper's (section 4.1): whole edges, as the nearest of the [reference
+//! viewpoints](super::ReferenceViewpoints) lists them. And from the surfaces, where every pose has its own exact answer: an edge
+//! is cut into equal intervals of about 10 cm, a ray to the middle of each tells
 //! whether the interval is seen, and neighbouring seen intervals join into one piece. So a piece ends half way between
 //! a seen and an unseen sample, and an edge seen at every sample is kept whole. There is no limit of range: an edge
 //! far away is seen as small as it is.
 
 use super::WireframeWorld;
 use super::occlusion::{Blocker, Occluders};
-use edgeloc::geometry::{Point3, Segment3};
+use super::viewpoints::EdgeSet;
+use edgeloc::geometry::{Point2, Point3, Segment3};
 use std::ops::Range;
 
 /// Length of a sampled interval \[m\].
@@ -20,11 +22,24 @@ const SAMPLE_COUNTS: (f32, f32) = (3.0, 30.0);
 /// Squares along the edge of the cube by which directions are bundled.
 const BUNDLES_A_SIDE: usize = 16;
 
-/// What is seen from one eye point; worked out edge by edge when first asked for.
+/// What is seen from one eye point.
 #[derive(Debug, Clone)]
 pub struct ViewpointVisibility<'a> {
     eye: Point3,
     edges: &'a [Segment3],
+    seen: Seen<'a>,
+}
+
+#[derive(Debug, Clone)]
+enum Seen<'a> {
+    ThroughSurfaces(SeenPieces<'a>),
+    Listed(&'a EdgeSet),
+}
+
+/// What is seen between the surfaces; worked out edge by edge when first asked for.
+#[derive(Debug, Clone)]
+struct SeenPieces<'a> {
+    eye: Point3,
     occluders: &'a Occluders,
     pieces: Vec<Segment3>,
     pieces_of_edge: Vec<Option<Range<u32>>>,
@@ -35,17 +50,22 @@ pub struct ViewpointVisibility<'a> {
 impl<'a> ViewpointVisibility<'a> {
     /// Nothing worked out yet, for an eye at `eye` in the world frame.
     ///
-    /// `occluders` are those of `world.surfaces`.
+    /// The world's reference viewpoints say what is seen, if it has any; otherwise the `occluders`, which are those of
+    /// `world.surfaces`.
     #[must_use]
     pub fn new(world: &'a WireframeWorld, occluders: &'a Occluders, eye: Point3) -> Self {
-        Self {
-            eye,
-            edges: &world.edges,
-            occluders,
-            pieces: Vec::new(),
-            pieces_of_edge: vec![None; world.edges.len()],
-            likely_blockers: vec![Blocker::default(); 6 * BUNDLES_A_SIDE * BUNDLES_A_SIDE],
-        }
+        let seen = match &world.reference_viewpoints {
+            Some(viewpoints) => Seen::Listed(&viewpoints.nearest(Point2::new(eye.x, eye.y)).visible),
+            None => Seen::ThroughSurfaces(SeenPieces::new(occluders, world.edges.len(), eye)),
+        };
+        Self { eye, edges: &world.edges, seen }
+    }
+
+    /// What the surfaces leave to be seen, whatever reference viewpoints the world has.
+    #[must_use]
+    pub(super) fn through_surfaces(world: &'a WireframeWorld, occluders: &'a Occluders, eye: Point3) -> Self {
+        let seen = Seen::ThroughSurfaces(SeenPieces::new(occluders, world.edges.len(), eye));
+        Self { eye, edges: &world.edges, seen }
     }
 
     /// Where the eye is, world frame.
@@ -65,15 +85,35 @@ impl<'a> ViewpointVisibility<'a> {
     /// # Panics
     /// When the world has no edge of that index.
     pub fn visible_parts(&mut self, edge_index: usize) -> &[Segment3] {
+        let edge = &self.edges[edge_index];
+        match &mut self.seen {
+            Seen::ThroughSurfaces(seen) => seen.pieces_of(edge_index, edge),
+            Seen::Listed(visible) if visible.contains(edge_index as u32) => std::slice::from_ref(edge),
+            Seen::Listed(_) => &[],
+        }
+    }
+}
+
+impl<'a> SeenPieces<'a> {
+    fn new(occluders: &'a Occluders, edge_count: usize, eye: Point3) -> Self {
+        Self {
+            eye,
+            occluders,
+            pieces: Vec::new(),
+            pieces_of_edge: vec![None; edge_count],
+            likely_blockers: vec![Blocker::default(); 6 * BUNDLES_A_SIDE * BUNDLES_A_SIDE],
+        }
+    }
+
+    fn pieces_of(&mut self, edge_index: usize, edge: &Segment3) -> &[Segment3] {
         let range = match &self.pieces_of_edge[edge_index] {
             Some(range) => range.clone(),
-            None => self.look_at(edge_index),
+            None => self.look_at(edge_index, edge),
         };
         &self.pieces[range.start as usize..range.end as usize]
     }
 
-    fn look_at(&mut self, edge_index: usize) -> Range<u32> {
-        let edge = self.edges[edge_index];
+    fn look_at(&mut self, edge_index: usize, edge: &Segment3) -> Range<u32> {
         let first_piece = self.pieces.len() as u32;
         let (fewest, most) = SAMPLE_COUNTS;
         let interval_count = libm::ceilf(edge.length_m() / SAMPLE_SPACING_M).clamp(fewest, most);
@@ -88,7 +128,7 @@ impl<'a> ViewpointVisibility<'a> {
                 None if is_seen => run_start = Some(begin),
                 Some(from) if !is_seen => {
                     let is_whole = from <= 0.0 && interval as f32 >= interval_count;
-                    self.pieces.push(if is_whole { edge } else { edge.part(from, begin) });
+                    self.pieces.push(if is_whole { *edge } else { edge.part(from, begin) });
                     run_start = None;
                 }
                 _ => {}

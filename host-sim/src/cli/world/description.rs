@@ -42,7 +42,7 @@ struct FreeSpaceDescription {
 impl WorldDescription {
     /// Describes a world read from or written to the file at `path`.
     pub(super) fn new(world: &WireframeWorld, path: &Path) -> Self {
-        let choice = WorldChoice::File { file: path.to_owned() };
+        let choice = WorldChoice::file(path.to_owned());
         let points =
             world.edges.iter().flat_map(|edge| [edge.start, edge.end]).map(|point| [point.x, point.y, point.z]);
         let joined = |pick: fn(f32, f32) -> f32| points.clone().reduce(|a, b| [0, 1, 2].map(|i| pick(a[i], b[i])));

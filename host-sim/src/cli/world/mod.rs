@@ -1,4 +1,4 @@
-//! `world`: generate, import, describe and draw worlds.
+//! `world`: generate, import, describe and draw worlds, and say what is visible in them.
 
 mod description;
 mod generate;
@@ -6,20 +6,23 @@ mod import;
 mod info;
 mod output;
 mod view;
+mod visibility;
 
 use clap::Subcommand;
 use edgeloc::geometry::Point2;
 use miette::Result;
 
-/// Generate, import, describe and draw worlds.
+/// Generate, import, describe and draw worlds, and say what is visible in them.
 #[derive(Debug, Subcommand)]
 #[command(after_help = "Examples:\n  edgeloc world generate --seed 7\n  edgeloc world import small_house.world\n  \
-                        edgeloc world info small_house.edgeworld\n  edgeloc world view small_house.edgeworld")]
+                        edgeloc world info small_house.edgeworld\n  edgeloc world view small_house.edgeworld\n  \
+                        edgeloc world visibility small_house.edgeworld")]
 pub(super) enum World {
     Generate(generate::Generate),
     Import(import::Import),
     Info(info::Info),
     View(view::View),
+    Visibility(visibility::Visibility),
 }
 
 impl World {
@@ -29,6 +32,7 @@ impl World {
             Self::Import(verb) => verb.execute(),
             Self::Info(verb) => verb.execute(),
             Self::View(verb) => verb.execute(),
+            Self::Visibility(verb) => verb.execute(),
         }
     }
 }

@@ -71,7 +71,7 @@ impl Assembly {
 
     pub(super) fn into_world(self, name: String, origin: String) -> WireframeWorld {
         let surfaces = Surfaces { vertices: self.vertices, triangles: self.triangles };
-        WireframeWorld { name, origin, edges: self.edges, surfaces }
+        WireframeWorld { name, origin, edges: self.edges, surfaces, reference_viewpoints: None }
     }
 }
 
