@@ -53,6 +53,7 @@ fn the_help_of_every_verb_has_an_example() {
         &["world", "info"],
         &["world", "view"],
         &["world", "visibility"],
+        &["world", "edit"],
         &["learn"],
         &["map"],
         &["map", "info"],

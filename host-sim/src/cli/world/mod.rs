@@ -1,6 +1,7 @@
 //! `world`: generate, import, describe and draw worlds, and say what is visible in them.
 
 mod description;
+mod edit;
 mod generate;
 mod import;
 mod info;
@@ -16,13 +17,15 @@ use miette::Result;
 #[derive(Debug, Subcommand)]
 #[command(after_help = "Examples:\n  edgeloc world generate --seed 7\n  edgeloc world import small_house.world\n  \
                         edgeloc world info small_house.edgeworld\n  edgeloc world view small_house.edgeworld\n  \
-                        edgeloc world visibility small_house.edgeworld")]
+                        edgeloc world visibility small_house.edgeworld\n  \
+                        edgeloc world edit small_house.edgeworld")]
 pub(super) enum World {
     Generate(generate::Generate),
     Import(import::Import),
     Info(info::Info),
     View(view::View),
     Visibility(visibility::Visibility),
+    Edit(edit::Edit),
 }
 
 impl World {
@@ -33,6 +36,7 @@ impl World {
             Self::Info(verb) => verb.execute(),
             Self::View(verb) => verb.execute(),
             Self::Visibility(verb) => verb.execute(),
+            Self::Edit(verb) => verb.execute(),
         }
     }
 }
