@@ -1,4 +1,4 @@
-//! What the steps need on the machine: compiler targets through rustup, an emulator through Debian's packages.
+//! What the steps need on the machine: compiler targets through rustup, programs through Debian's packages.
 
 use std::process::{Command, Stdio};
 
@@ -6,24 +6,28 @@ use crate::steps::THUMB_TARGETS;
 use crate::summary::Outcome;
 use crate::workspace::{Workspace, run};
 
-/// The emulator's program and the Debian package that brings it.
+/// Programs that are also the names of the Debian packages that bring them: the emulator, and the browser that tests
+/// the editor's page.
+const PROGRAMS: [&str; 2] = [EMULATOR, "chromium"];
+
 const EMULATOR: &str = "qemu-system-arm";
 
-/// The one command for those who are not root.
-const INSTALL_EMULATOR: &str = "apt-get install --no-install-recommends qemu-system-arm";
+/// The one command, before the names of packages.
+const INSTALL: &str = "apt-get install --no-install-recommends";
 
 /// Installs what is missing. A target that can't be added is a failure; a package that needs another user is a skip.
 pub(crate) fn run_setup(workspace: &Workspace) -> Outcome {
     if let Err(reason) = add_targets(workspace) {
         return Outcome::Failed(reason);
     }
-    if is_present(EMULATOR) {
+    let missing = PROGRAMS.into_iter().filter(|program| !is_present(program)).collect::<Vec<_>>().join(" ");
+    if missing.is_empty() {
         return Outcome::Passed;
     }
     if !is_root() {
-        return Outcome::Skipped(format!("{EMULATOR} is missing; install it: sudo {INSTALL_EMULATOR}"));
+        return Outcome::Skipped(format!("missing: {missing}; install: sudo {INSTALL} {missing}"));
     }
-    match install_emulator(workspace) {
+    match install(workspace, &missing) {
         Ok(()) => Outcome::Passed,
         Err(reason) => Outcome::Failed(reason),
     }
@@ -31,7 +35,7 @@ pub(crate) fn run_setup(workspace: &Workspace) -> Outcome {
 
 /// Why the emulator can't be used, with the remedy; `None` when it is there.
 pub(crate) fn missing_emulator() -> Option<String> {
-    (!is_present(EMULATOR)).then(|| format!("{EMULATOR} is missing; install it: sudo {INSTALL_EMULATOR}"))
+    (!is_present(EMULATOR)).then(|| format!("{EMULATOR} is missing; install it: sudo {INSTALL} {EMULATOR}"))
 }
 
 /// Adds the targets that are not installed yet; without a missing one the network is not touched.
@@ -53,15 +57,15 @@ fn missing_targets(installed: &str) -> Vec<&'static str> {
     THUMB_TARGETS.into_iter().filter(|target| installed.lines().all(|line| line.trim() != *target)).collect()
 }
 
-fn install_emulator(workspace: &Workspace) -> Result<(), String> {
+fn install(workspace: &Workspace, packages: &str) -> Result<(), String> {
     let apt = |arguments: &str| {
         let mut command = workspace.tool("apt-get", "");
         command.env("DEBIAN_FRONTEND", "noninteractive").args(arguments.split_whitespace());
         run(command)
     };
-    // A mirror that can't be reached matters only if the package can't be had: the installation decides.
+    // A mirror that can't be reached matters only if a package can't be had: the installation decides.
     let _ = apt("update");
-    apt("install --yes --no-install-recommends qemu-system-arm")
+    apt(&format!("install --yes --no-install-recommends {packages}"))
 }
 
 fn is_present(program: &str) -> bool {
