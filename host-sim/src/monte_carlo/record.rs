@@ -47,6 +47,8 @@ pub struct TrialRecord {
     pub looks: u32,
     /// Segments of all looks together that entered the matching.
     pub scene_segments: u32,
+    /// Nodes scored in all looks together: the work of the localiser, alike on every machine.
+    pub scored_nodes: u32,
     /// Accumulated score of the leading node, Bhattacharyya coefficients summed over looks.
     pub leader_score: f64,
     /// Accumulated score of the best other node still a candidate before the last look; 0 when there is none.

@@ -69,6 +69,7 @@ impl<'s> Trial<'s> {
 
             record.looks += 1;
             record.scene_segments += localizer.scene_segment_count() as u32;
+            record.scored_nodes += was_candidate.iter().filter(|is_candidate| **is_candidate).count() as u32;
             watch(&LookEvent {
                 heading,
                 compass,
@@ -110,6 +111,7 @@ impl<'s> Trial<'s> {
             is_success: false,
             looks: 0,
             scene_segments: 0,
+            scored_nodes: 0,
             leader_score: 0.0,
             runner_up_score: 0.0,
             truth_score: None,

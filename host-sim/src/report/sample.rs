@@ -70,6 +70,7 @@ fn record(stream: &mut Stream, row: &str, start: Start, trial: u32, nodes: &[Poi
         is_success,
         looks: 1 + stream.index(if is_success { 4 } else { 12 }) as u32,
         scene_segments: 200,
+        scored_nodes: 80,
         leader_score: 1.4,
         runner_up_score: 1.2,
         truth_score: Some(1.3),
