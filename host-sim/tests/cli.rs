@@ -63,6 +63,8 @@ fn the_help_of_every_verb_has_an_example() {
         &["report"],
         &["power"],
         &["sources"],
+        &["figures"],
+        &["optimise"],
     ] {
         let help = done(folder.path(), &[verb, &["--help"]].concat());
         let example = format!("  edgeloc {}", verb.join(" "));
@@ -270,5 +272,81 @@ fn the_power_of_a_comparison_is_told_before_a_run() {
     ] {
         let stderr = failed(path, arguments, 1);
         assert!(stderr.contains(expected), "{arguments:?}: {stderr}");
+    }
+}
+
+/// A study of four settings, small enough for a debug build.
+const STUDY: &str = r#"
+trials = 4
+learning = { nodes = 4, views = 12 }
+rows = [
+    { name = "4(a): B_th 0", start = "near", polarity = true, set = { "localizer.score_margin" = 0.0 } },
+    { name = "4(a): B_th 0.1", start = "near", polarity = true },
+    { name = "4(b): none", start = "near", polarity = true, set = { "uncertainty.edge_detection_loss.enabled" = false } },
+    { name = "nodes: 3", start = "near", polarity = true, set = { "learning.nodes" = 3 } },
+]
+"#;
+
+#[test]
+fn a_study_gives_its_figures_and_gives_them_again() {
+    let folder = folder();
+    let path = folder.path();
+    std::fs::write(path.join("study.toml"), STUDY).expect("written");
+    let study = json(&done(path, &["figures", "study.toml", "--anywhere", "--format", "json"]));
+    assert_documented(path, &["figures"], &study);
+    let lines = study["lines"].as_array().expect("lines");
+    let tests = lines.iter().map(|line| line["test"].as_str().expect("a word")).collect::<Vec<_>>();
+    assert_eq!(tests[..4], ["mcnemar", "default", "mcnemar", "two_rates"]);
+    assert_eq!(tests[4..], ["mcnemar", "default", "mcnemar", "mcnemar"], "anywhere the poses do not depend on nodes");
+    assert_eq!(lines[1]["paper_success_rate"], 0.9557);
+
+    let run = path.join(study["folder"].as_str().expect("a path"));
+    for drawing in ["figure-4a.svg", "figure-4b.svg", "figure-nodes.svg"] {
+        let text = std::fs::read_to_string(run.join(drawing)).expect("a drawing");
+        assert!(text.starts_with("<svg") && !text.contains("NaN"), "{drawing}");
+    }
+    let csv = std::fs::read_to_string(run.join("figures.csv")).expect("a table");
+    std::fs::remove_file(run.join("figures.html")).expect("a page");
+    let again = done(path, &["figures", "--from", "runs/latest"]);
+    assert!(again.contains("4(b): none, anywhere") && again.contains("95.57 %"), "{again}");
+    assert_eq!(std::fs::read_to_string(run.join("figures.csv")).expect("a table"), csv);
+    let page = std::fs::read_to_string(run.join("figures.html")).expect("a page");
+    assert!(!page.contains("<script") && !page.contains("src="));
+}
+
+#[test]
+fn a_search_repeats_resumes_and_gives_a_preset_that_runs() {
+    let folder = folder();
+    let path = folder.path();
+    let ask = ["optimise", "--trials-total", "60", "--settings", "4", "--finalists", "2", "--set", "learning.nodes=4"];
+    let axes = ["--axis", "localizer.score_margin=0.0,0.1", "--axis", "learning.nodes=3,4", "--format", "json"];
+    let search = |more: &[&str]| json(&done(path, &[&ask[..], &axes, more].concat()));
+    let (first, second) = (search(&["--threads", "1"]), search(&["--threads", "2"]));
+    let mut told = first.clone();
+    // The keys of the axes are the user's own.
+    told["settings"].as_array_mut().expect("settings").iter_mut().for_each(|line| line["values"] = 0.into());
+    assert_documented(path, &["optimise"], &told);
+    let decided = |search: &serde_json::Value| {
+        let mut lines = search["settings"].clone();
+        let lines_of = lines.as_array_mut().expect("settings");
+        lines_of.iter_mut().for_each(|line| line["mean_localizer_s"] = 0.into());
+        lines
+    };
+    assert_eq!(decided(&first), decided(&second));
+    let chosen = decided(&first);
+    let chosen = chosen.as_array().expect("settings").iter().filter(|line| line["is_chosen"] == true).count();
+    assert_eq!(chosen, 1);
+
+    let interrupted = first["folder"].as_str().expect("a path");
+    std::fs::remove_file(path.join(interrupted).join("confirmation.json")).expect("a stage");
+    assert_eq!(decided(&search(&["--resume", interrupted])), decided(&first));
+    let other = failed(path, &[&ask[..], &axes, &["--seed", "5", "--resume", interrupted]].concat(), 1);
+    assert!(other.contains("another search"), "{other}");
+
+    let preset = first["preset"].as_str().expect("a path");
+    let whole = done(path, &["run", preset, "--print-config"]);
+    assert!(whole.contains("name = \"optimised\"") && whole.contains("distance_bins"), "{whole}");
+    for file in ["settings.csv", "front-time.svg", "front-map.svg", "optimise.html"] {
+        assert!(path.join(interrupted).join(file).is_file(), "{file}");
     }
 }

@@ -6,9 +6,11 @@
 mod attempt;
 mod console;
 mod demo;
+mod figures;
 mod learn;
 mod locate;
 mod map;
+mod optimise;
 mod power;
 mod progress;
 mod replay;
@@ -58,8 +60,10 @@ enum Verb {
     Run(run::Run),
     Replay(replay::Replay),
     Report(report::Report),
+    Figures(figures::Figures),
     Power(power::Power),
     Sources(sources::Sources),
+    Optimise(optimise::Optimise),
 }
 
 /// Reads the command line and does what it asks.
@@ -75,8 +79,10 @@ pub(crate) fn main() -> ExitCode {
         Verb::Run(verb) => verb.execute(),
         Verb::Replay(verb) => verb.execute(),
         Verb::Report(verb) => verb.execute(),
+        Verb::Figures(verb) => verb.execute(),
         Verb::Power(verb) => verb.execute(),
         Verb::Sources(verb) => verb.execute(),
+        Verb::Optimise(verb) => verb.execute(),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

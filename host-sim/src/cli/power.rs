@@ -74,7 +74,7 @@ impl Power {
         }
         let (first, second) = needed.rates;
         console::print(&format!(
-            "to tell {} from {} with {:.4} % confidence and {:.0} % power, trials of each setting:",
+            "to tell {} from {} with {:.2} % confidence and {:.0} % power, trials of each setting:",
             percent(first),
             percent(second),
             100.0 * (1.0 - needed.significance),

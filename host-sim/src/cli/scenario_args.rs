@@ -10,7 +10,7 @@ use std::path::PathBuf;
 /// Which scenario, and what to change in it.
 #[derive(Debug, Clone, Args)]
 pub(super) struct ScenarioArguments {
-    /// Scenario file (.toml), or a bundled scenario: paper, edgeloc, smoke.
+    /// Scenario file (.toml), or a bundled scenario: paper, edgeloc, smoke, figures, paper-scale.
     #[arg(default_value = "paper")]
     scenario: String,
     #[command(flatten)]
@@ -50,13 +50,25 @@ impl ScenarioArguments {
 impl ScenarioChanges {
     /// The scenario called `name` with these changes, checked; none when it was only to be printed.
     pub(super) fn load(&self, name: &str) -> Result<Option<Scenario>> {
+        self.load_adapted(name, |scenario| scenario)
+    }
+
+    /// The same, with its rows adapted by a verb of its own.
+    pub(super) fn load_adapted(
+        &self,
+        name: &str,
+        adapt: impl FnOnce(Scenario) -> Scenario,
+    ) -> Result<Option<Scenario>> {
         let numbers = [
             self.trials.map(|trials| format!("trials={trials}")),
             self.nodes.map(|nodes| format!("learning.nodes={nodes}")),
             self.seed.map(|seed| format!("seed={seed}")),
         ];
         let settings = self.settings.iter().cloned().chain(numbers.into_iter().flatten()).collect::<Vec<_>>();
-        let mut scenario = Scenario::load(name, &settings)?;
+        let mut scenario = adapt(Scenario::load(name, &settings)?);
+        if self.trials.is_some() {
+            scenario.rows.iter_mut().for_each(|row| row.trials = None);
+        }
         if let Some(world) = &self.world {
             let file = std::path::absolute(world).unwrap_or_else(|_| world.clone());
             let is_named = |setting: &String| setting.split('=').next().is_some_and(|key| key.trim() == "name");

@@ -1,5 +1,6 @@
 //! The charts of a run: success against distance to the nearest node, and looks.
 
+use super::axes::Axes;
 use super::drawing::{SERIES_COUNT, drawing, line, percent, text, tidy, tooltip};
 use super::summary::PAPER_RATE;
 use crate::monte_carlo::{SuccessRate, TrialRecord};
@@ -11,35 +12,6 @@ use svg::node::element::{Circle, Group, Path, Rectangle, SVG};
 const DISTANCE_BORDERS_M: [f64; 13] = [0.0, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0, 3.0, f64::INFINITY];
 /// Bins of fewer trials say nothing and are left out.
 const MIN_TRIALS_PER_BIN: u64 = 5;
-
-/// The area of a chart inside its axes, and how values map to it.
-struct Axes {
-    left: f64,
-    top: f64,
-    width: f64,
-    height: f64,
-}
-
-impl Axes {
-    fn x(&self, fraction: f64) -> f64 {
-        tidy(self.left + fraction * self.width)
-    }
-
-    /// `fraction` grows upwards.
-    fn y(&self, fraction: f64) -> f64 {
-        tidy(self.top + (1.0 - fraction) * self.height)
-    }
-
-    fn rates_grid(&self) -> Group {
-        let mut group = Group::new();
-        for tenth in [0, 2, 4, 6, 8, 10] {
-            let rate = f64::from(tenth) / 10.0;
-            group.append(line("grid", (self.x(0.0), self.y(rate)), (self.x(1.0), self.y(rate))));
-            group.append(text("end", (self.left - 8.0, self.y(rate) + 4.0), format!("{} %", tenth * 10)));
-        }
-        group
-    }
-}
 
 /// Success against distance to the nearest node, binned, one series a row with 95 % intervals.
 #[must_use]

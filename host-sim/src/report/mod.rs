@@ -3,13 +3,21 @@
 //! [`RunFolder`] holds everything needed to repeat a run; [`page()`] makes one self-contained HTML file of it, drawings
 //! inline and without scripts. The drawings serve the command line too.
 
+mod axes;
 mod charts;
+mod document;
 mod drawing;
 mod explanation;
+mod figure_chart;
+mod figure_lines;
+mod figures_page;
 mod floor_plan;
 mod manifest;
 mod page;
+mod pareto_chart;
 mod run_folder;
+mod search_lines;
+mod search_page;
 mod summary;
 mod timings;
 mod trials_csv;
@@ -21,10 +29,16 @@ mod sample;
 pub use charts::{looks_histogram, rate_strip, success_by_distance};
 pub use drawing::to_svg_file;
 pub use explanation::{LookExplanation, NodeStanding, scene_drawing, sight};
+pub use figure_chart::figure_chart;
+pub use figure_lines::{FigureLine, TestKind, figure_lines, figures_csv};
+pub use figures_page::{figures_page, power_sentence};
 pub use floor_plan::{FloorPlan, FreeCells};
 pub use manifest::{HostFacts, Manifest, WorldFacts};
 pub use page::{page, replay_command};
+pub use pareto_chart::{Cost, pareto_chart};
 pub use run_folder::{RunFolder, RunFolderError, RunResults};
+pub use search_lines::{SearchLine, search_csv, search_lines};
+pub use search_page::{SearchFacts, search_page};
 pub use summary::{MapFacts, PAPER_INTERVAL, PAPER_RATE, RowSummary, Summary, worst_trials};
 pub use timings::{RowTimings, RunTimings};
 pub use trials_plan::{trial_marks, trials_plan};

@@ -29,6 +29,16 @@ pub const PRESETS: &[Preset] = &[
         summary: "the paper's on a small scale, a few seconds: does everything work?",
         text: include_str!("../../scenarios/smoke.toml"),
     },
+    Preset {
+        name: "figures",
+        summary: "the settings of the paper's figures 4 and 5, 900 trials each",
+        text: include_str!("../../scenarios/figures.toml"),
+    },
+    Preset {
+        name: "paper-scale",
+        summary: "77 settings and 74,110 trials, as many as the paper counts",
+        text: include_str!("../../scenarios/paper-scale.toml"),
+    },
 ];
 
 impl Preset {

@@ -69,7 +69,7 @@ impl Sample {
     }
 
     fn mean(&self, value: impl Fn(&TrialResult) -> f64) -> f64 {
-        self.trials.iter().map(value).sum::<f64>() / self.trials.len().max(1) as f64
+        self.trials.iter().map(value).fold(0.0, |sum, value| sum + value) / self.trials.len().max(1) as f64
     }
 }
 

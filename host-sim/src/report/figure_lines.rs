@@ -1,0 +1,168 @@
+//! The rows of a study as lines of a table: what `figures.csv` holds, the page shows and `--format json` prints.
+
+use super::RunResults;
+use crate::monte_carlo::{SuccessRate, difference_interval, paired_difference_interval};
+use crate::scenario::{IllegalValue, Start};
+use crate::sweep::{Against, Comparison, PaperClaim, compare_with_default, figure_and_setting, paper_claim};
+use serde::Serialize;
+
+/// One setting of a figure. Rates and differences are fractions.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FigureLine {
+    /// Name of the row.
+    pub row: String,
+    /// Figure that it belongs to.
+    pub figure: String,
+    /// Setting in that figure.
+    pub setting: String,
+    /// Where its trials start.
+    pub start: Start,
+    /// Whether its histograms use polarity.
+    pub polarity: bool,
+    /// Trials.
+    pub trials: u64,
+    /// Trials that ended at one of the two nearest nodes.
+    pub successes: u64,
+    /// Successes per trial; none without trials.
+    pub success_rate: Option<f64>,
+    /// Lower end of the 95 % Wilson interval.
+    pub success_rate_low: f64,
+    /// Upper end of the 95 % Wilson interval.
+    pub success_rate_high: f64,
+    /// Mean looks of a localisation.
+    pub mean_looks: f64,
+    /// Mean wall time of a localisation in seconds.
+    pub mean_localizer_s: f64,
+    /// How it is compared with the default of its start.
+    pub test: TestKind,
+    /// Trials that only the default got right, when paired.
+    pub only_default: Option<u64>,
+    /// Trials that only this setting got right, when paired.
+    pub only_setting: Option<u64>,
+    /// Success rate less that of the default.
+    pub difference: Option<f64>,
+    /// Lower end of the difference's 95 % interval (Newcombe).
+    pub difference_low: Option<f64>,
+    /// Upper end of the difference's 95 % interval.
+    pub difference_high: Option<f64>,
+    /// Two-sided p-value of no difference.
+    pub p: Option<f64>,
+    /// The same after Holm's correction over the whole study.
+    pub p_holm: Option<f64>,
+    /// Success rate that the paper states of this setting.
+    pub paper_success_rate: Option<f64>,
+    /// Time of a localisation that the paper states, in seconds.
+    pub paper_time_s: Option<f64>,
+}
+
+/// How a setting is compared with the default.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TestKind {
+    /// It is the default.
+    Default,
+    /// Trial by trial, McNemar's exact test.
+    Mcnemar,
+    /// As two rates, because the robot poses differ.
+    TwoRates,
+    /// There is nothing to compare with.
+    None,
+}
+
+impl FigureLine {
+    /// The success rate with its interval.
+    #[must_use]
+    pub fn success(&self) -> SuccessRate {
+        SuccessRate { successes: self.successes, trials: self.trials }
+    }
+
+    /// What the paper states of the setting, which it tests near the nodes as we read it.
+    #[must_use]
+    pub fn paper(&self) -> Option<&'static PaperClaim> {
+        paper_claim(&self.figure, &self.setting).filter(|_| self.start == Start::Near)
+    }
+
+    /// Share of the paired trials in which exactly one of default and setting was right.
+    #[must_use]
+    pub fn discordance(&self) -> Option<f64> {
+        let discordant = self.only_default? + self.only_setting?;
+        (self.trials > 0).then(|| discordant as f64 / self.trials as f64)
+    }
+}
+
+/// The lines of a finished study, in the scenario's order.
+///
+/// # Errors
+/// The first row that is not legal.
+pub fn figure_lines(results: &RunResults) -> Result<Vec<FigureLine>, IllegalValue> {
+    let comparisons = compare_with_default(&results.scenario, &results.records)?;
+    let rows = results.scenario.rows.iter().zip(&results.summary.rows).zip(comparisons);
+    let lines = rows.map(|((row, summary), comparison)| {
+        let (figure, setting) = figure_and_setting(row);
+        let timings = results.timings.rows.iter().find(|timings| timings.row == row.name);
+        let mut line = FigureLine {
+            row: row.name.clone(),
+            figure: figure.to_owned(),
+            setting: setting.to_owned(),
+            start: row.start,
+            polarity: row.polarity,
+            trials: summary.trials,
+            successes: summary.successes,
+            success_rate: summary.success_rate,
+            success_rate_low: summary.success_rate_low,
+            success_rate_high: summary.success_rate_high,
+            mean_looks: summary.mean_looks,
+            mean_localizer_s: timings.map_or(0.0, |timings| timings.mean_s_per_look * summary.mean_looks),
+            test: TestKind::None,
+            only_default: None,
+            only_setting: None,
+            difference: None,
+            difference_low: None,
+            difference_high: None,
+            p: comparison.p,
+            p_holm: comparison.p_holm,
+            paper_success_rate: None,
+            paper_time_s: None,
+        };
+        if let Some(claim) = line.paper() {
+            (line.paper_success_rate, line.paper_time_s) = (Some(claim.success_rate), claim.time_s);
+        }
+        fill_comparison(&mut line, &comparison);
+        line
+    });
+    Ok(lines.collect())
+}
+
+fn fill_comparison(line: &mut FigureLine, comparison: &Comparison) {
+    let (difference, (low, high)) = match comparison.against {
+        Against::IsDefault => {
+            line.test = TestKind::Default;
+            return;
+        }
+        Against::NoDefault => return,
+        Against::Paired(counts) => {
+            line.test = TestKind::Mcnemar;
+            (line.only_default, line.only_setting) = (Some(counts.only_a), Some(counts.only_b));
+            (counts.difference(), paired_difference_interval(&counts))
+        }
+        Against::Unpaired(default, setting) => {
+            line.test = TestKind::TwoRates;
+            let difference = setting.rate().zip(default.rate()).map(|(setting, default)| setting - default);
+            (difference, difference_interval(default, setting))
+        }
+    };
+    line.difference = difference;
+    (line.difference_low, line.difference_high) = (Some(low), Some(high));
+}
+
+/// The lines as CSV, the columns named as the fields of [`FigureLine`].
+///
+/// # Errors
+/// When a line can't be written.
+pub fn figures_csv(lines: &[FigureLine]) -> Result<Vec<u8>, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for line in lines {
+        writer.serialize(line)?;
+    }
+    writer.into_inner().map_err(|error| csv::Error::from(error.into_error()))
+}
