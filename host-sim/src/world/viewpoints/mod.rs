@@ -6,7 +6,7 @@
 //! 2. a robot between two viewpoints sees what is seen half a metre away, from there;
 //! 3. the nearest is the nearest as the crow flies, though a wall may stand between.
 //!
-//! The [file](self::file) that holds them can be edited by hand, and with `edgeloc world edit`.
+//! The [`mod@file`] that holds them can be edited by hand, and with `edgeloc world edit`.
 
 mod edge_set;
 pub mod file;
