@@ -9,7 +9,7 @@ use edgeloc_sim::monte_carlo::{self, Sites};
 use edgeloc_sim::report::{
     Cost, RunFolder, SearchFacts, SearchLine, pareto_chart, search_csv, search_lines, search_page, to_svg_file,
 };
-use edgeloc_sim::scenario::{Row, Scenario, Setting, WorldChoice};
+use edgeloc_sim::scenario::{Building, Row, Scenario, Setting};
 use edgeloc_sim::sweep::{
     Axis, Sample, Schedule, Stage, Standing, choose, draw_points, preset_toml, samples, search, stage_scenario,
 };
@@ -179,7 +179,7 @@ impl Optimise {
         let mut scenario = Scenario::load(&self.scenario, &settings)?;
         if let Some(world) = &self.world {
             let file = std::path::absolute(world).unwrap_or_else(|_| world.clone());
-            scenario.world = WorldChoice::File { file };
+            scenario.world.building = Building::File { file };
         }
         let named = Scenario { name: format!("optimise-{}", self.name), ..scenario.clone() };
         for checked in [&scenario, &named] {
@@ -219,9 +219,9 @@ impl Optimise {
         for setting in &points[chosen] {
             scenario = scenario.with_setting(setting)?;
         }
-        let world_name = match &base.world {
-            WorldChoice::Office { seed } => format!("office {seed}"),
-            WorldChoice::File { file } => file.display().to_string(),
+        let world_name = match &base.world.building {
+            Building::Office { seed } => format!("office {seed}"),
+            Building::File { file } => file.display().to_string(),
         };
         let of = |setting: usize| format!("{}, {:.2} looks", lines[setting].success(), lines[setting].mean_looks);
         let comment = [

@@ -66,9 +66,6 @@ impl ScenarioChanges {
         ];
         let settings = self.settings.iter().cloned().chain(numbers.into_iter().flatten()).collect::<Vec<_>>();
         let mut scenario = adapt(Scenario::load(name, &settings)?);
-        if self.trials.is_some() {
-            scenario.rows.iter_mut().for_each(|row| row.trials = None);
-        }
         if let Some(world) = &self.world {
             let file = std::path::absolute(world).unwrap_or_else(|_| world.clone());
             let is_named = |setting: &String| setting.split('=').next().is_some_and(|key| key.trim() == "name");

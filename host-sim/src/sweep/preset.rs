@@ -39,7 +39,7 @@ mod tests {
         let mut scenario = Scenario { name: "fast".to_owned(), ..Scenario::default() };
         scenario.localizer.turn_deg = 60.0;
         scenario.localizer.pgh.distance_bins = 10;
-        scenario.world = WorldChoice::File { file: PathBuf::from("/a/b.edgeworld") };
+        scenario.world = WorldChoice::file(PathBuf::from("/a/b.edgeworld"));
         let text = preset_toml(&scenario, &["found by a search".to_owned()]);
         assert_eq!(Scenario::parse(&text, "preset").expect("a scenario"), scenario);
         assert!(text.starts_with("# found by a search\n") && text.lines().count() < 14, "{text}");
