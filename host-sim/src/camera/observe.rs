@@ -44,7 +44,7 @@ pub fn left_segments(observation: &StereoObservation) -> Vec<Segment2> {
 }
 
 /// Whether a segment of the left camera's frame is not wholly beyond one side of the left camera's view.
-fn may_be_in_view(rig: &StereoRig, segment: &Segment3) -> bool {
+pub(super) fn may_be_in_view(rig: &StereoRig, segment: &Segment3) -> bool {
     let camera = &rig.camera;
     let (focal, center) = (camera.focal_length_px(), camera.principal_point_px());
     let (right, bottom) = (f32::from(camera.width_px()) - center.x, f32::from(camera.height_px()) - center.y);

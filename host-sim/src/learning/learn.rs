@@ -5,12 +5,12 @@
 //! views then cover the whole turn once, and a node has one merged model in its own frame: origin at the node's
 //! position at camera height, axes parallel to the world's.
 
-use super::NodeViews;
 use super::node_views::{half_spacing_rad, view_heading};
+use super::{CalibratedRig, NodeViews};
 use crate::camera::{CameraPose, StereoObservation, triangulate_feature};
 use crate::uncertainty::{NoiseKey, Sources};
 use edgeloc::database::{self, NodeModel, WriteError};
-use edgeloc::geometry::{Point2, Point3, Segment3, StereoRig};
+use edgeloc::geometry::{Point2, Point3, Segment3};
 use edgeloc::math;
 use rayon::prelude::*;
 
@@ -25,28 +25,30 @@ pub struct LearnedNode {
 
 /// Learns one map and writes it as a database; `map_index` selects the draw of the noise.
 ///
+/// `robot` is the rig as the robot knows it; the views were seen by the true one.
+///
 /// # Errors
 /// When the map doesn't fit the format, for instance without nodes or views.
 pub fn learn(
-    rig: &StereoRig,
+    robot: &CalibratedRig,
     nodes: &[NodeViews],
     sources: &Sources,
     seed: u64,
     map_index: u64,
 ) -> Result<Vec<u8>, WriteError> {
-    let learned = learn_nodes(rig, nodes, sources, seed, map_index);
+    let learned = learn_nodes(robot, nodes, sources, seed, map_index);
     let models: Vec<_> =
         learned.iter().map(|node| NodeModel { position: node.position, segments: &node.segments }).collect();
     let views_per_node = nodes.first().map_or(0, |node| node.views.len() as u16);
     let mut bytes = vec![0; database::encoded_len(&models).ok_or(WriteError::TooLarge)?];
-    database::write(rig, views_per_node, &models, &mut bytes)?;
+    database::write(robot.rig(), views_per_node, &models, &mut bytes)?;
     Ok(bytes)
 }
 
 /// Learns the model of every node, in order and in parallel; the same whatever the number of threads.
 #[must_use]
 pub fn learn_nodes(
-    rig: &StereoRig,
+    robot: &CalibratedRig,
     nodes: &[NodeViews],
     sources: &Sources,
     seed: u64,
@@ -54,13 +56,13 @@ pub fn learn_nodes(
 ) -> Vec<LearnedNode> {
     let learn_one = |(node_index, node): (usize, &NodeViews)| {
         let key_of_view = |view_index| NoiseKey::view(seed, map_index, node_index as u32, view_index);
-        learn_node(rig, node, sources, key_of_view)
+        learn_node(robot, node, sources, key_of_view)
     };
     nodes.par_iter().enumerate().map(learn_one).collect()
 }
 
 fn learn_node(
-    rig: &StereoRig,
+    robot: &CalibratedRig,
     node: &NodeViews,
     sources: &Sources,
     key_of_view: impl Fn(u16) -> NoiseKey,
@@ -69,12 +71,13 @@ fn learn_node(
     // Midpoints lie before the camera, so one or two views leave nothing out.
     let sector_slope = if view_count > 2 { math::tan(half_spacing_rad(view_count)) } else { f32::INFINITY };
     let mut segments = Vec::new();
-    let mut observation = StereoObservation { rig: *rig, features: Vec::new() };
+    let mut observation = StereoObservation { rig: *robot.rig(), features: Vec::new() };
     for (view_index, clean) in (0..view_count).zip(&node.views) {
         observation.clone_from(clean);
         sources.apply(&mut observation, &key_of_view(view_index));
+        robot.rectify(&mut observation);
         let node_from_camera = CameraPose::new(Point3::default(), view_heading(view_index, view_count));
-        let model = observation.features.iter().flat_map(|feature| triangulate_feature(rig, feature));
+        let model = observation.features.iter().flat_map(|feature| triangulate_feature(robot.rig(), feature));
         let own = model.filter(|segment| is_in_sector(segment, sector_slope));
         segments.extend(own.map(|segment| node_from_camera.segment_from_camera(&segment)));
     }
@@ -95,9 +98,10 @@ mod tests {
     use crate::uncertainty::EdgeDetectionLoss;
     use crate::world::{Occluders, WireframeWorld};
     use edgeloc::database::TopologicalDatabase;
-    use edgeloc::geometry::Polarity;
+    use edgeloc::geometry::{Polarity, StereoRig};
 
     const RIG: StereoRig = StereoRig::reference();
+    const ROBOT: CalibratedRig = CalibratedRig::exact(RIG);
 
     /// Posts in a ring around the origin, 1 to 6 m away, with no surfaces; each post is one vertical edge.
     fn posts() -> WireframeWorld {
@@ -125,7 +129,7 @@ mod tests {
     #[test]
     fn without_noise_each_edge_is_learned_once_where_it_is() {
         let world = posts();
-        for node in learn_nodes(&RIG, &views(), &Sources::none(), 1, 0) {
+        for node in learn_nodes(&ROBOT, &views(), &Sources::none(), 1, 0) {
             assert_eq!(node.segments.len(), world.edges.len());
             for edge in &world.edges {
                 let in_node = |point: Point3| {
@@ -144,10 +148,10 @@ mod tests {
     #[test]
     fn each_map_draws_its_own_noise_and_the_same_map_the_same() {
         let (views, sources) = (views(), Sources::default());
-        let first = learn(&RIG, &views, &sources, 1, 0).expect("a map");
-        assert_eq!(first, learn(&RIG, &views, &sources, 1, 0).expect("a map"));
-        assert_ne!(first, learn(&RIG, &views, &sources, 1, 1).expect("a map"));
-        assert_ne!(first, learn(&RIG, &views, &sources, 2, 0).expect("a map"));
+        let first = learn(&ROBOT, &views, &sources, 1, 0).expect("a map");
+        assert_eq!(first, learn(&ROBOT, &views, &sources, 1, 0).expect("a map"));
+        assert_ne!(first, learn(&ROBOT, &views, &sources, 1, 1).expect("a map"));
+        assert_ne!(first, learn(&ROBOT, &views, &sources, 2, 0).expect("a map"));
     }
 
     #[test]
@@ -155,7 +159,7 @@ mod tests {
         let (views, sources) = (views(), Sources::default());
         let learn_with = |thread_count| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(thread_count).build().expect("a pool");
-            pool.install(|| learn_nodes(&RIG, &views, &sources, 1, 0))
+            pool.install(|| learn_nodes(&ROBOT, &views, &sources, 1, 0))
         };
         assert_eq!(learn_with(1), learn_with(4));
     }
@@ -163,7 +167,7 @@ mod tests {
     #[test]
     fn two_nodes_with_the_same_view_draw_apart() {
         let view = views().swap_remove(0);
-        let learned = learn_nodes(&RIG, &[view.clone(), view], &Sources::default(), 1, 0);
+        let learned = learn_nodes(&ROBOT, &[view.clone(), view], &Sources::default(), 1, 0);
         assert_ne!(learned[0].segments, learned[1].segments);
     }
 
@@ -172,7 +176,7 @@ mod tests {
         let sources = Sources { edge_detection_loss: EdgeDetectionLoss::default(), ..Sources::none() };
         let total = |nodes: &[LearnedNode]| nodes[0].segments.iter().map(Segment3::length_m).sum::<f32>();
         let (clean, broken) =
-            (learn_nodes(&RIG, &views(), &Sources::none(), 1, 0), learn_nodes(&RIG, &views(), &sources, 1, 0));
+            (learn_nodes(&ROBOT, &views(), &Sources::none(), 1, 0), learn_nodes(&ROBOT, &views(), &sources, 1, 0));
         assert!(broken[0].segments.len() > clean[0].segments.len());
         // A 3-D segment needs the edge in both images, which lose 11.25 % each: 60 % of that together in whole features,
         // the rest in gaps of their own; splinters go as well.
@@ -185,9 +189,9 @@ mod tests {
     #[test]
     fn the_bytes_hold_the_rig_the_views_and_every_segment() {
         let (views, sources) = (views(), Sources::default());
-        let bytes = learn(&RIG, &views, &sources, 1, 0).expect("a map");
+        let bytes = learn(&ROBOT, &views, &sources, 1, 0).expect("a map");
         let database = TopologicalDatabase::open(&bytes).expect("what was just written");
-        let learned = learn_nodes(&RIG, &views, &sources, 1, 0);
+        let learned = learn_nodes(&ROBOT, &views, &sources, 1, 0);
         assert_eq!((database.views_per_node(), *database.rig(), database.node_count()), (12, RIG, 2));
         for (node, learned) in database.nodes().zip(&learned) {
             assert!(node.position().distance(learned.position) < 1e-3);
@@ -202,6 +206,6 @@ mod tests {
 
     #[test]
     fn a_map_without_nodes_is_refused() {
-        assert_eq!(learn(&RIG, &[], &Sources::none(), 1, 0), Err(WriteError::Empty));
+        assert_eq!(learn(&ROBOT, &[], &Sources::none(), 1, 0), Err(WriteError::Empty));
     }
 }

@@ -1,9 +1,13 @@
 //! World learning: from what a stereo rig sees at the nodes to the bytes of a topological database.
 
+mod calibrated_rig;
+mod calibration_bench;
 mod learn;
 mod node_views;
 mod place_nodes;
 
+pub use calibrated_rig::CalibratedRig;
+pub use calibration_bench::{CalibrationBench, FAR_DISPARITY_PX, PRIOR, SimulatedCalibration, bench_prior};
 pub use learn::{LearnedNode, learn, learn_nodes};
 pub use node_views::NodeViews;
 pub use place_nodes::{PlaceNodesError, place_nodes};

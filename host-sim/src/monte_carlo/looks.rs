@@ -15,6 +15,7 @@ pub(super) struct Looks<'s> {
     site: &'s Site,
     seed: u64,
     trial: u32,
+    map: u32,
     visibility: ViewpointVisibility<'s>,
     clean: Vec<(Heading, StereoObservation)>,
     scenes: Vec<SeenScene<'s>>,
@@ -30,9 +31,9 @@ struct SeenScene<'s> {
 }
 
 impl<'s> Looks<'s> {
-    pub(super) fn new(site: &'s Site, seed: u64, trial: u32, start: TruePose) -> Self {
+    pub(super) fn new(site: &'s Site, seed: u64, trial: u32, map: u32, start: TruePose) -> Self {
         let visibility = site.viewpoint(start.position);
-        Self { site, seed, trial, visibility, clean: Vec::new(), scenes: Vec::new() }
+        Self { site, seed, trial, map, visibility, clean: Vec::new(), scenes: Vec::new() }
     }
 
     /// The scene of the `look`-th look, from 0, with the optical axis along `heading`, through `sources`.
@@ -54,6 +55,7 @@ impl<'s> Looks<'s> {
     fn take(&mut self, look: usize, heading: Heading, sources: &Sources) -> Vec<Segment2> {
         let mut observation = self.clean(heading).clone();
         sources.apply(&mut observation, &self.noise_key(look));
+        self.site.calibrated_rig(sources, self.seed, self.map).rectify(&mut observation);
         camera::left_segments(&observation)
     }
 

@@ -66,7 +66,7 @@ pub fn replay(
     let bytes = site.learn_map(scenario, map)?;
     let database = TopologicalDatabase::open(&bytes)?;
     let start = start.unwrap_or_else(|| draw_start(site, scenario, setting.row.start, trial));
-    let mut looks = Looks::new(site, scenario.seed, trial, start);
+    let mut looks = Looks::new(site, scenario.seed, trial, map, start);
     let mut memory = vec![0; memory_len(setting, database.node_count())];
     let map_bytes = bytes.len() as u32;
     Ok(Trial { site, setting, trial, map, map_bytes, start }.run(database, &mut memory, &mut looks, watch))
@@ -102,7 +102,7 @@ fn run_block(sites: &Sites, map: u32, on_trial: &(dyn Fn(&TrialRecord) + Sync)) 
         let Some(&any) = rows.first() else { return Vec::new() };
         let (site, Setting { row, scenario }) = (sites.of_row(any), &settings[any]);
         let start = draw_start(site, scenario, row.start, trial);
-        let mut looks = Looks::new(site, scenario.seed, trial, start);
+        let mut looks = Looks::new(site, scenario.seed, trial, map, start);
         let run_row = |row: usize| {
             let mut times = Vec::new();
             let (database, map_bytes) = maps[row].expect("a row with trials here has a map");

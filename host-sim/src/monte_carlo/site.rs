@@ -1,7 +1,8 @@
 //! What all trials of a run share: the building, the nodes in it and what a noise-free robot saw from them.
 
-use crate::learning::{self, NodeViews, PlaceNodesError};
+use crate::learning::{self, CalibratedRig, CalibrationBench, NodeViews, PlaceNodesError};
 use crate::scenario::Scenario;
+use crate::uncertainty::Sources;
 use crate::world::{FreeSpace, FreeSpaceError, FreeSpaceOptions, Occluders, ViewpointVisibility, WireframeWorld};
 use edgeloc::database::WriteError;
 use edgeloc::geometry::{Point2, Point3, StereoRig};
@@ -20,6 +21,8 @@ pub struct Site {
     pub rig: StereoRig,
     /// Where the nodes are, world frame \[m\].
     pub nodes: Vec<Point2>,
+    /// Where the robot's calibrations come from: the same for every set of nodes.
+    pub calibration_bench: Arc<CalibrationBench>,
     node_views: Vec<NodeViews>,
 }
 
@@ -32,7 +35,8 @@ impl Site {
         let rig = scenario.rig.stereo_rig().map_err(SiteError::Rig)?;
         let occluders = Arc::new(Occluders::new(&world.surfaces));
         let free_space = Arc::new(FreeSpace::of(&world, &FreeSpaceOptions::default())?);
-        Self::learned(Arc::new(world), occluders, free_space, rig, scenario)
+        let bench = Arc::new(CalibrationBench::observe(&rig, &world, &occluders, &free_space, scenario.seed));
+        Self::learned(Arc::new(world), occluders, free_space, bench, rig, scenario)
     }
 
     /// The same building with the nodes of another `scenario` of the same world, rig and seed.
@@ -41,19 +45,20 @@ impl Site {
     /// When there is not enough free space for the nodes.
     pub fn learned_anew(&self, scenario: &Scenario) -> Result<Self, SiteError> {
         let (world, occluders, free_space) = (self.world.clone(), self.occluders.clone(), self.free_space.clone());
-        Self::learned(world, occluders, free_space, self.rig, scenario)
+        Self::learned(world, occluders, free_space, self.calibration_bench.clone(), self.rig, scenario)
     }
 
     fn learned(
         world: Arc<WireframeWorld>,
         occluders: Arc<Occluders>,
         free_space: Arc<FreeSpace>,
+        calibration_bench: Arc<CalibrationBench>,
         rig: StereoRig,
         scenario: &Scenario,
     ) -> Result<Self, SiteError> {
         let nodes = learning::place_nodes(&free_space, usize::from(scenario.learning.nodes), scenario.seed)?;
         let node_views = NodeViews::observe_all(&rig, &world, &occluders, &nodes, scenario.learning.views);
-        Ok(Self { world, occluders, free_space, rig, nodes, node_views })
+        Ok(Self { world, occluders, free_space, rig, nodes, calibration_bench, node_views })
     }
 
     /// Learns the map, with the `map_index`-th draw of the uncertainty sources: the bytes of a topological database.
@@ -61,7 +66,14 @@ impl Site {
     /// # Errors
     /// When what was learned does not fit the database format.
     pub fn learn_map(&self, scenario: &Scenario, map_index: u32) -> Result<Vec<u8>, WriteError> {
-        learning::learn(&self.rig, &self.node_views, &scenario.uncertainty, scenario.seed, u64::from(map_index))
+        let robot = self.calibrated_rig(&scenario.uncertainty, scenario.seed, map_index);
+        learning::learn(&robot, &self.node_views, &scenario.uncertainty, scenario.seed, u64::from(map_index))
+    }
+
+    /// The rig as the robot of the `map_index`-th map knows it: the one that learned the map and is put down with it.
+    #[must_use]
+    pub fn calibrated_rig(&self, sources: &Sources, seed: u64, map_index: u32) -> CalibratedRig {
+        self.calibration_bench.calibrated_rig(sources, seed, u64::from(map_index))
     }
 
     /// The density of the nodes: free space for each \[m2\].

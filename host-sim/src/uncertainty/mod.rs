@@ -18,11 +18,18 @@
 //! | [`ImageNoise`] | (psi_l, psi_g) | 0 grey levels | both | moves pieces and end points as noisy pixels do |
 //! | [`EpipolarRemoval`] | | 5 degrees | learning | leaves near-horizontal features unmatched |
 //! | [`StereoMatch`] | psi_s | 1 % | learning | matches that share of the features wrongly |
+//! | [`CornerDetectionLoss`] | psi_cd | 15 % | calibration | drops that share of the corners of each image |
+//! | [`CornerMatch`] | psi_cm | 1 % | calibration | matches that share of the corners wrongly |
+//! | [`CameraCalibration`] | psi_c | 1 | both | gives each map's robot wrong parameters of its cameras |
 //! | [`Compass`] | | off; 2 degrees | looks | tells the localiser a wrong heading |
 
+mod camera_calibration;
 mod camera_tilt;
 mod clutter;
 mod compass;
+mod corner_detection_loss;
+mod corner_match;
+mod corners;
 mod edge_detection_loss;
 mod epipolar_removal;
 mod geometric_approximation;
@@ -35,9 +42,12 @@ mod stereo_match;
 #[cfg(test)]
 mod test_observation;
 
+pub use camera_calibration::CameraCalibration;
 pub use camera_tilt::CameraTilt;
 pub use clutter::Clutter;
 pub use compass::Compass;
+pub use corner_detection_loss::CornerDetectionLoss;
+pub use corner_match::CornerMatch;
 pub use edge_detection_loss::EdgeDetectionLoss;
 pub use epipolar_removal::EpipolarRemoval;
 pub use geometric_approximation::GeometricApproximation;

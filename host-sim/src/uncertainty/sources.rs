@@ -11,8 +11,9 @@
 //! ```
 
 use super::{
-    ActsIn, CameraTilt, Clutter, Compass, EdgeDetectionLoss, EpipolarRemoval, GeometricApproximation, ImageNoise,
-    LateralEdgeShift, PolarityFlips, SourceFacts, SourceNumber, SourceSetting, StereoMatch, UncertaintySource,
+    ActsIn, CameraCalibration, CameraTilt, Clutter, Compass, CornerDetectionLoss, CornerMatch, EdgeDetectionLoss,
+    EpipolarRemoval, GeometricApproximation, ImageNoise, LateralEdgeShift, PolarityFlips, SourceFacts, SourceNumber,
+    SourceSetting, StereoMatch, UncertaintySource,
 };
 use crate::camera::StereoObservation;
 use crate::random::Stream;
@@ -73,6 +74,9 @@ list_of_sources! {
     image_noise: ImageNoise,
     epipolar_removal: EpipolarRemoval,
     stereo_match: StereoMatch,
+    corner_detection_loss: CornerDetectionLoss,
+    corner_match: CornerMatch,
+    camera_calibration: CameraCalibration,
     compass: Compass,
 }
 
@@ -136,7 +140,7 @@ impl SourceError {
     }
 }
 
-/// Which draw of the noise: one look of one trial, or one view of one map.
+/// Which draw of the noise: one look of one trial, one view of one map, one view of a calibration, or one robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NoiseKey {
     seed: u64,
@@ -149,6 +153,8 @@ impl NoiseKey {
     const LOOK: &str = "psi-look";
     const VIEW: &str = "psi-view";
     const TRIAL: &str = "psi-all";
+    const CORNERS: &str = "psi-crnr";
+    const ROBOT: &str = "psi-robo";
 
     /// The noise of one look of a trial, looks counted from 0. Trials of one index share it wherever they start, as
     /// common random numbers.
@@ -168,6 +174,16 @@ impl NoiseKey {
         Self { seed: self.seed, purpose: Self::TRIAL, index: self.index, part: 0 }
     }
 
+    /// The noise of one view of a calibration.
+    pub(super) const fn corners(seed: u64, view_index: u64) -> Self {
+        Self { seed, purpose: Self::CORNERS, index: view_index, part: 0 }
+    }
+
+    /// The robot that learns and uses one of the maps of a run.
+    pub(super) const fn robot(seed: u64, map_index: u64) -> Self {
+        Self { seed, purpose: Self::ROBOT, index: map_index, part: 0 }
+    }
+
     fn is_of(&self, acts_in: ActsIn) -> bool {
         match acts_in {
             ActsIn::Learning => self.purpose == Self::VIEW,
@@ -176,7 +192,7 @@ impl NoiseKey {
         }
     }
 
-    fn stream(&self, facts: &SourceFacts) -> Stream {
+    pub(super) fn stream(&self, facts: &SourceFacts) -> Stream {
         // A part has at most 48 bits, a stream's number 16, so that no two sources, looks or views share a stream.
         Stream::new(self.seed, self.purpose, self.index, self.part << 16 | u64::from(facts.stream_id))
     }

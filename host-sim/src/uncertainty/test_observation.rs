@@ -5,6 +5,7 @@ use crate::camera::{StereoFeature, StereoObservation};
 use crate::random::Stream;
 use edgeloc::geometry::{Point2, Polarity, Segment2, StereoRig};
 use edgeloc::math;
+use edgeloc::stereo::CornerPair;
 
 /// `count` matchable features of random direction, 10 to 250 px long, with disparities of 20 px.
 pub(super) fn observation(count: usize) -> StereoObservation {
@@ -30,6 +31,12 @@ pub(super) fn perturbed(source: &dyn UncertaintySource, count: usize) -> StereoO
     let mut observation = observation(count);
     source.apply(&mut observation, &mut unit_stream());
     observation
+}
+
+/// `count` corners, no two alike.
+pub(super) fn corners(count: usize) -> Vec<CornerPair> {
+    let point = |index: usize, shift: f32| Point2::new(100.0 + index as f32 * 0.5 - shift, 50.0 + index as f32 * 0.25);
+    (0..count).map(|index| CornerPair { left: point(index, 0.0), right: point(index, 20.0) }).collect()
 }
 
 /// A stream for one test.

@@ -2,7 +2,7 @@
 
 use edgeloc::geometry::{Angle, Heading, Point2, Point3, StereoRig};
 use edgeloc_sim::camera::{left_segments, observe};
-use edgeloc_sim::learning::{self, NodeViews, place_nodes};
+use edgeloc_sim::learning::{self, CalibratedRig, NodeViews, place_nodes};
 use edgeloc_sim::random::Stream;
 use edgeloc_sim::uncertainty::{NoiseKey, Sources};
 use edgeloc_sim::world::office::{self, OfficeOptions};
@@ -64,7 +64,8 @@ impl Site {
     /// The map of the nodes, learned with every source at its default.
     pub(super) fn learn(&self) -> Vec<u8> {
         let views = NodeViews::observe_all(&self.rig, &self.world, &self.occluders, &self.nodes, VIEW_COUNT);
-        learning::learn(&self.rig, &views, &Sources::default(), SEED, 0).expect("an office fits the format")
+        let robot = CalibratedRig::exact(self.rig);
+        learning::learn(&robot, &views, &Sources::default(), SEED, 0).expect("an office fits the format")
     }
 
     /// What a robot sees in `count` looks, turning by `turn` between them, with a perfect compass; `index` draws the
