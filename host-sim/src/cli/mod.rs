@@ -4,6 +4,7 @@
 //! usage of the command line.
 
 mod attempt;
+mod calibrate;
 mod console;
 mod demo;
 mod figures;
@@ -54,6 +55,7 @@ enum Verb {
     #[command(subcommand)]
     World(world::World),
     Learn(learn::Learn),
+    Calibrate(calibrate::Calibrate),
     #[command(subcommand)]
     Map(map::Map),
     Locate(locate::Locate),
@@ -74,6 +76,7 @@ pub(crate) fn main() -> ExitCode {
         Verb::Demo(verb) => verb.execute(),
         Verb::World(verb) => verb.execute(),
         Verb::Learn(verb) => verb.execute(),
+        Verb::Calibrate(verb) => verb.execute(),
         Verb::Map(verb) => verb.execute(),
         Verb::Locate(verb) => verb.execute(),
         Verb::Run(verb) => verb.execute(),
