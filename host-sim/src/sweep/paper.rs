@@ -142,7 +142,7 @@ mod tests {
     fn the_study_has_the_settings_that_the_paper_states() {
         let study = Scenario::load("figures", &[]).expect("bundled");
         let counts = figures_of(&study.rows).iter().map(|figure| figure.settings.len()).collect::<Vec<_>>();
-        assert_eq!((counts, study.trials), (vec![5, 7, 4, 4], 900));
+        assert_eq!((counts, study.trials), (vec![5, 9, 4, 4], 900));
         let compared = compare_with_default(&study, &[]).expect("legal rows");
         let defaults = compared.iter().filter(|comparison| comparison.p.is_none()).count();
         assert_eq!(defaults, 4, "each figure has the default once");
@@ -153,7 +153,7 @@ mod tests {
         let (figures, scale) = (Scenario::load("figures", &[]), Scenario::load("paper-scale", &[]));
         let (figures, scale) = (figures.expect("bundled"), scale.expect("bundled"));
         let trials = scale.rows.iter().map(|row| row.trials.expect("stated")).collect::<Vec<_>>();
-        assert_eq!((trials.len(), trials.iter().sum::<u32>()), (74, 71_224));
+        assert_eq!((trials.len(), trials.iter().sum::<u32>()), (77, 74_110));
         assert!(trials[..36].iter().all(|&count| count == 963) && trials[36..].iter().all(|&count| count == 962));
         for (row, stated) in figures.rows.iter().zip(&scale.rows) {
             assert_eq!((&row.name, &row.set), (&stated.name, &stated.set));
