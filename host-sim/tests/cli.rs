@@ -61,6 +61,8 @@ fn the_help_of_every_verb_has_an_example() {
         &["run"],
         &["replay"],
         &["report"],
+        &["compare"],
+        &["merge"],
         &["power"],
         &["sources"],
         &["figures"],
@@ -349,4 +351,114 @@ fn a_search_repeats_resumes_and_gives_a_preset_that_runs() {
     for file in ["settings.csv", "front-time.svg", "front-map.svg", "optimise.html"] {
         assert!(path.join(interrupted).join(file).is_file(), "{file}");
     }
+}
+
+/// What of a run's folder does not depend on wall times, machine or command.
+const REPEATABLE: [&str; 4] = ["trials.csv", "nodes.csv", "summary.json", "scenario.toml"];
+
+fn assert_same_results(path: &Path, one: &serde_json::Value, other: &serde_json::Value) {
+    let read = |run: &serde_json::Value, file: &str| {
+        std::fs::read(path.join(run["folder"].as_str().expect("a path")).join(file)).expect("a file of the run")
+    };
+    for file in REPEATABLE {
+        assert!(read(one, file) == read(other, file), "{file} differs between {one} and {other}");
+    }
+}
+
+#[test]
+fn shards_merge_into_the_whole_run_and_wrong_folders_are_named() {
+    let folder = folder();
+    let path = folder.path();
+    let run = |more: &[&str]| json(&done(path, &[&["run"][..], &QUICK, &["--format", "json"], more].concat()));
+    let whole = run(&[]);
+    for shard in ["1/3", "2/3", "3/3"] {
+        run(&["--shard", shard, "--out", "parts"]);
+    }
+    let parts: Vec<String> = std::fs::read_dir(path.join("parts"))
+        .expect("a folder")
+        .map(|entry| format!("parts/{}", entry.expect("an entry").file_name().to_string_lossy()))
+        .filter(|name| name.contains("-shard-"))
+        .collect();
+    let mut parts: Vec<&str> = parts.iter().map(String::as_str).collect();
+    parts.sort_unstable();
+    assert_eq!(parts.len(), 3);
+    let merged = json(&done(path, &[&["merge", "--format", "json"], &parts[..]].concat()));
+    assert_same_results(path, &whole, &merged);
+    assert_documented(path, &["merge"], &merged);
+    done(path, &["replay", "runs/latest", "--trial", "2"]);
+
+    let missing = failed(path, &["merge", parts[0], parts[2]], 1);
+    assert!(missing.contains("missing: 2/3"), "{missing}");
+    let doubled = failed(path, &[&["merge", parts[0]], &parts[..]].concat(), 1);
+    assert!(doubled.contains("1/3 is there twice"), "{doubled}");
+    let foreign = failed(path, &["merge", parts[0], whole["folder"].as_str().expect("a path")], 1);
+    assert!(foreign.contains("a whole run, not a shard"), "{foreign}");
+    let too_many = failed(path, &[&["run"][..], &QUICK, &["--shard", "1/9"]].concat(), 1);
+    assert!(too_many.contains("too few for 9 shards"), "{too_many}");
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_says_how_to_go_on_and_ends_with_the_same_bytes() {
+    let folder = folder();
+    let path = folder.path();
+    let arguments = ["run", "smoke", "--nodes", "4", "--trials", "80", "--format", "json"];
+    let whole = json(&done(path, &[&arguments[..], &["--out", "whole"]].concat()));
+
+    let mut command = Command::new(env!("CARGO_BIN_EXE_edgeloc"));
+    command.current_dir(path).args(arguments).stdout(std::process::Stdio::null()).stderr(std::process::Stdio::piped());
+    let child = command.spawn().expect("the binary starts");
+    let journal = path.join("runs/latest/journal.ndjson");
+    let lines = || std::fs::read(&journal).map_or(0, |bytes| bytes.iter().filter(|&&byte| byte == b'\n').count());
+    let patience = std::time::Instant::now();
+    while lines() < 3 && patience.elapsed().as_secs() < 120 {
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    let id = child.id().to_string();
+    assert!(Command::new("kill").args(["-INT", &id]).status().is_ok_and(|status| status.success()));
+    let interrupted = child.wait_with_output().expect("it ends");
+    let words = String::from_utf8_lossy(&interrupted.stderr);
+    assert_eq!(interrupted.status.code(), Some(1), "{words}");
+    assert!(words.contains("edgeloc run --resume runs/20") && words.contains("of 160 trials are kept"), "{words}");
+
+    for verb in [&["report", "runs/latest"][..], &["replay", "runs/latest", "--trial", "0"], &["merge", "runs/latest"]]
+    {
+        let refusal = failed(path, verb, 1);
+        assert!(refusal.contains("not finished") && refusal.contains("edgeloc run --resume runs/20"), "{refusal}");
+    }
+    // A power cut may leave half a line.
+    let mut torn = std::fs::OpenOptions::new().append(true).open(&journal).expect("a journal");
+    std::io::Write::write_all(&mut torn, b"{\"row\":0,\"rec").expect("written");
+
+    let resumed = json(&done(path, &["run", "--resume", "runs/latest", "--format", "json"]));
+    assert_same_results(path, &whole, &resumed);
+    assert!(!journal.exists());
+    assert!(failed(path, &["run", "--resume", "runs/latest"], 1).contains("is finished"));
+    failed(path, &["run", "smoke", "--resume", "runs/latest"], 2);
+}
+
+#[test]
+fn runs_are_compared_in_pairs_and_refused_when_they_are_not() {
+    let folder = folder();
+    let path = folder.path();
+    for more in [&[][..], &["--set", "localizer.score_margin=0"], &["--seed", "5"]] {
+        done(path, &[&["run"][..], &QUICK, more].concat());
+    }
+    let mut runs: Vec<String> = std::fs::read_dir(path.join("runs"))
+        .expect("a folder")
+        .map(|entry| format!("runs/{}", entry.expect("an entry").file_name().to_string_lossy()))
+        .filter(|name| !name.ends_with("latest"))
+        .collect();
+    runs.sort_unstable();
+    let compared = json(&done(path, &["compare", &runs[0], &runs[1], "--format", "json"]));
+    assert_eq!((compared.as_array().map(Vec::len), &compared[0]["a"]["trials"]), (Some(2), &serde_json::json!(3)));
+    assert_documented(path, &["compare"], &compared);
+    let table = done(path, &["compare", &runs[0], &runs[1], "--row", "near, polarity"]);
+    assert!(table.contains("McNemar") && table.contains("points"), "{table}");
+
+    let refusal = failed(path, &["compare", &runs[0], &runs[2]], 1);
+    assert!(refusal.contains("different seeds, 1 and 5") && refusal.contains("--unpaired"), "{refusal}");
+    assert!(done(path, &["compare", &runs[0], &runs[2], "--unpaired"]).contains("unpaired"));
+    let other_start = ["compare", &runs[0], &runs[0], "--row", "near, polarity", "--row-b", "anywhere, no polarity"];
+    assert!(failed(path, &other_start, 1).contains("different poses"));
 }

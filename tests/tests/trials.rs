@@ -1,12 +1,16 @@
 //! Kidnapped-robot trials end to end: the same rows by every way, the certain case, and a table of a small sweep.
 
 use edgeloc::geometry::{Angle, Heading};
-use edgeloc_sim::monte_carlo::{LookEvent, RunOutcome, Site, Sites, TrialRecord, TruePose, replay, run};
+use edgeloc_sim::monte_carlo::{
+    LookEvent, Outcome, Part, RunOutcome, Shard, Site, Sites, TimedTrial, TrialRecord, TruePose, replay, run, run_part,
+};
 use edgeloc_sim::scenario::{Row, Scenario, Setting, Start};
 use edgeloc_sim::uncertainty::Sources;
 use edgeloc_sim::world::WireframeWorld;
 use edgeloc_sim::world::office::{self, OfficeOptions};
 use std::fmt::Write as _;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A small scenario in the generated office: 16 nodes, 12 trials of four rows over 3 maps.
 fn small_scenario() -> Scenario {
@@ -40,6 +44,67 @@ fn one_thread_and_many_and_a_replay_give_the_same_records() {
         let again = replay(&sites.all()[0], setting, record.trial, None, |_| ()).expect("the map can be learned");
         assert_eq!(again, *record);
     }
+}
+
+/// The trials of a part, on three threads.
+fn run_some(sites: &Sites, part: &Part<'_>) -> Vec<TimedTrial> {
+    let ended = Mutex::new(Vec::new());
+    let keep = |trial| ended.lock().expect("no panic").push(trial);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().expect("a small pool");
+    pool.install(|| run_part(sites, part, &keep)).expect("the office can be learned");
+    ended.into_inner().expect("no panic")
+}
+
+#[test]
+fn shards_and_a_run_resumed_after_each_interruption_give_the_same_records() {
+    let mut scenario = Scenario { trials: 7, ..small_scenario() };
+    scenario.rows[1] = Row::new("other nodes", Start::Near, false).with("learning.nodes", 9);
+    scenario.rows[2].trials = Some(9);
+    let sites = office_sites(&scenario);
+    let whole = run_on(2, &sites).records;
+    assert_eq!(whole.len(), 30);
+
+    for count in [2, 3, 5] {
+        let part = |index| {
+            let trials = Shard { index, count }.trials(&scenario).expect("not too many");
+            run_some(&sites, &Part { trials, is_done: &|_, _| false, should_stop: &|| false })
+        };
+        assert_eq!(RunOutcome::of((1..=count).flat_map(part).collect()).records, whole, "{count} shards");
+    }
+
+    let mut ended: Vec<TimedTrial> = Vec::new();
+    let mut interruptions = 0;
+    while ended.len() < whole.len() {
+        let asked = AtomicUsize::new(0);
+        let is_done = |row, trial| ended.iter().any(|ended| (ended.row, ended.record.trial) == (row, trial));
+        // Two maps may be learned and some trials begin before it stops.
+        let should_stop = || asked.fetch_add(1, Ordering::Relaxed) > 7;
+        let more = run_some(&sites, &Part { trials: 0..9, is_done: &is_done, should_stop: &should_stop });
+        interruptions += usize::from(!more.is_empty());
+        ended.extend(more);
+    }
+    assert!(interruptions > 2, "{interruptions}");
+    assert_eq!(RunOutcome::of(ended).records, whole);
+}
+
+#[test]
+fn a_trial_that_breaks_down_is_a_failed_trial_with_its_reason() {
+    let scenario = small_scenario();
+    let sites = office_sites(&scenario);
+    let mut looks = 0;
+    let watch = |_: &LookEvent<'_>| {
+        looks += 1;
+        assert!(looks < 2, "broken at look {looks}");
+    };
+    let setting = &sites.settings()[2];
+    let trial = (0..12).find(|&trial| {
+        let whole = replay(&sites.all()[0], setting, trial, None, |_| ()).expect("the map can be learned");
+        whole.looks > 1
+    });
+    let trial = trial.expect("a trial of two looks");
+    let record = replay(&sites.all()[0], setting, trial, None, watch).expect("the map can be learned");
+    assert_eq!((record.outcome, record.is_success, record.looks), (Outcome::Error, false, 2));
+    assert_eq!(record.message.as_deref(), Some("panicked: broken at look 2"));
 }
 
 #[test]

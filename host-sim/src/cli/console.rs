@@ -66,11 +66,7 @@ pub(super) fn check_overwrite(path: &Path, force: bool) -> Result<()> {
         remark(&format!("{} is overwritten", path.display()));
         return Ok(());
     }
-    Err(miette!(
-        help = "choose another name with --output, or overwrite it with --force",
-        "{} exists already",
-        path.display()
-    ))
+    Err(miette!(help = "choose another name, or overwrite it with --force", "{} exists already", path.display()))
 }
 
 /// Writes a file whole or not at all.

@@ -5,12 +5,15 @@
 
 mod attempt;
 mod calibrate;
+mod compare;
 mod console;
 mod demo;
 mod figures;
+mod interruption;
 mod learn;
 mod locate;
 mod map;
+mod merge;
 mod optimise;
 mod power;
 mod progress;
@@ -46,6 +49,7 @@ Examples:
   edgeloc world import small_house.world         make a world of a building
   edgeloc run paper --world small_house.edgeworld
   edgeloc replay runs/latest --trial 17          one trial of a run, look by look
+  edgeloc compare runs/ONE runs/OTHER            is the one setting better? a paired test
 
 Exit codes: 0 done, 1 failed, 2 wrong usage of the command line.";
 
@@ -63,6 +67,8 @@ enum Verb {
     Replay(replay::Replay),
     Report(report::Report),
     Figures(figures::Figures),
+    Compare(compare::Compare),
+    Merge(merge::Merge),
     Power(power::Power),
     Sources(sources::Sources),
     Optimise(optimise::Optimise),
@@ -83,6 +89,8 @@ pub(crate) fn main() -> ExitCode {
         Verb::Replay(verb) => verb.execute(),
         Verb::Report(verb) => verb.execute(),
         Verb::Figures(verb) => verb.execute(),
+        Verb::Compare(verb) => verb.execute(),
+        Verb::Merge(verb) => verb.execute(),
         Verb::Power(verb) => verb.execute(),
         Verb::Sources(verb) => verb.execute(),
         Verb::Optimise(verb) => verb.execute(),

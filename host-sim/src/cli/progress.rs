@@ -1,6 +1,6 @@
 //! Progress on standard error: rate, time to go and the success rate so far; silent unless it is a terminal.
 
-use edgeloc_sim::monte_carlo::{SuccessRate, TrialRecord};
+use edgeloc_sim::monte_carlo::{SuccessRate, TimedTrial, TrialRecord};
 use edgeloc_sim::scenario::Scenario;
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 use std::collections::BTreeMap;
@@ -63,13 +63,22 @@ pub(super) struct TrialProgress {
 impl TrialProgress {
     /// The bar of all trials of a scenario.
     pub(super) fn new(scenario: &Scenario) -> Self {
+        Self::going_on(scenario.total_trials() as usize, &[])
+    }
+
+    /// The bar of so many trials, some of them done before.
+    pub(super) fn going_on(trials: usize, done: &[TimedTrial]) -> Self {
         let style = ProgressStyle::with_template(BAR).unwrap_or_else(|_| ProgressStyle::default_bar());
         let style = style.with_key("rate", |state: &ProgressState, output: &mut dyn Write| {
             let _ = write!(output, "{:.1}/s", state.per_sec());
         });
-        let bar = ProgressBar::new(scenario.total_trials()).with_style(style);
+        let bar = ProgressBar::new(trials as u64).with_style(style);
         bar.enable_steady_tick(Duration::from_millis(200));
-        Self { bar, rates: Mutex::default() }
+        let progress = Self { bar, rates: Mutex::default() };
+        done.iter().for_each(|trial| progress.count(&trial.record));
+        // The rate is of what is done from now on.
+        progress.bar.reset_eta();
+        progress
     }
 
     /// Counts a trial that ended.

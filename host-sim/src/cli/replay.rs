@@ -6,8 +6,9 @@ use super::report::{open, world_of};
 use super::scenario_args::find_setting;
 use super::world::file_stem;
 use clap::Args;
-use edgeloc_sim::monte_carlo::Site;
+use edgeloc_sim::monte_carlo::{Site, TrialRecord};
 use miette::{IntoDiagnostic, Result, miette};
+use serde_json::{Map, Value};
 use std::path::PathBuf;
 
 /// Replay one trial of a finished run, explained look by look; fails when it does not come out as recorded.
@@ -52,11 +53,26 @@ impl Replay {
         if attempt.record != *recorded {
             return Err(miette!(
                 help = "a run replays with the version of the program that made it; manifest.json names it",
-                "the replay differs from the run:\n recorded {recorded:?}\n replayed {:?}",
-                attempt.record
+                "the replay differs from the run in {}",
+                differences(recorded, &attempt.record)
             ));
         }
         console::remark("the replay equals the run's record");
         Ok(())
     }
+}
+
+/// The fields in which two records differ, with both values.
+fn differences(recorded: &TrialRecord, replayed: &TrialRecord) -> String {
+    let fields = |record| match serde_json::to_value(record) {
+        Ok(Value::Object(fields)) => fields,
+        _ => Map::new(),
+    };
+    let (recorded, replayed) = (fields(recorded), fields(replayed));
+    let differing = recorded.iter().filter(|(field, value)| replayed.get(*field) != Some(value));
+    let words = differing.map(|(field, value)| {
+        let now = replayed.get(field).unwrap_or(&Value::Null);
+        format!("{field} (recorded {value}, replayed {now})")
+    });
+    words.collect::<Vec<_>>().join(", ")
 }

@@ -3,14 +3,13 @@
 use super::console::{self, Format};
 use super::run::{JSON_FIELDS, RunPrinted};
 use super::scenario_args::find_setting;
-use super::trials::name;
+use super::trials::{behind_link, name, unchanged_world};
 use super::{summary_table, worlds};
 use clap::Args;
-use edgeloc_sim::report::{FloorPlan, RunFolder, RunResults, WorldFacts, page, to_svg_file, trials_plan};
-use edgeloc_sim::scenario::Scenario;
+use edgeloc_sim::report::{FloorPlan, RunFolder, RunResults, page, to_svg_file, trials_plan};
 use edgeloc_sim::world::{FreeSpace, FreeSpaceOptions, WireframeWorld};
-use miette::{Result, miette};
-use std::path::PathBuf;
+use miette::Result;
+use std::path::{Path, PathBuf};
 
 /// Print the figures of a finished run and write its report.html anew.
 #[derive(Debug, Args)]
@@ -25,6 +24,9 @@ pub(super) struct Report {
     /// Also write the plan of one row's trials, as a drawing of its own.
     #[arg(long, value_name = "FILE")]
     plan: Option<PathBuf>,
+    /// Overwrite the plan.
+    #[arg(long, requires = "plan")]
+    force: bool,
     /// Row of the plan [default: the first].
     #[arg(long, requires = "plan")]
     row: Option<String>,
@@ -35,6 +37,9 @@ pub(super) struct Report {
 
 impl Report {
     pub(super) fn execute(self) -> Result<()> {
+        if let Some(plan) = &self.plan {
+            console::check_overwrite(plan, self.force)?;
+        }
         let (folder, results) = open(&self.run)?;
         let world = match world_of(&results) {
             Ok(world) => Some(world),
@@ -64,36 +69,13 @@ impl Report {
 }
 
 /// A finished run: its folder, whatever link led there, and its results.
-pub(super) fn open(path: &std::path::Path) -> Result<(RunFolder, RunResults)> {
-    // A link such as runs/latest will lead elsewhere after the next run.
-    let path = path.read_link().map_or_else(|_| path.to_owned(), |target| path.with_file_name(target));
-    let folder = RunFolder::open(&path)?;
+pub(super) fn open(path: &Path) -> Result<(RunFolder, RunResults)> {
+    let folder = RunFolder::open(&behind_link(path))?;
     let results = folder.read_results()?;
     Ok((folder, results))
 }
 
 /// The world that a run took place in, if it is still the same.
 pub(super) fn world_of(results: &RunResults) -> Result<WireframeWorld> {
-    let Scenario { world: choice, .. } = &results.scenario;
-    let world = worlds::open(choice)?;
-    let (now, then) = (WorldFacts::new(&world, choice), &results.manifest.world);
-    if now.checksum != then.checksum {
-        return Err(miette!(
-            help = "bring back the world file of the run, or use the version of the program that made it",
-            "the world {:?} has changed since the run: its checksum was {}, it is {}",
-            world.name,
-            then.checksum,
-            now.checksum
-        ));
-    }
-    match (&now.visibility, &then.visibility) {
-        (Some(now), Some(then)) if now.checksum != then.checksum => Err(miette!(
-            help = "bring back the file as it was, or run the scenario again",
-            "what is visible in the world has changed since the run: the checksum of {} was {}, it is {}",
-            now.file.as_deref().unwrap_or("the viewpoints"),
-            then.checksum,
-            now.checksum
-        )),
-        _ => Ok(world),
-    }
+    unchanged_world(&results.scenario, &results.manifest)
 }

@@ -3,6 +3,7 @@
 mod looks;
 mod record;
 mod runner;
+mod shard;
 mod site;
 mod sites;
 mod start;
@@ -10,7 +11,8 @@ mod statistics;
 mod trial;
 
 pub use record::{Outcome, TrialRecord};
-pub use runner::{RunError, RunOutcome, replay, run};
+pub use runner::{Part, RunError, RunOutcome, TimedTrial, replay, run, run_part};
+pub use shard::{Shard, ShardError, count_trials};
 pub use site::{Site, SiteError};
 pub use sites::{PrepareError, Sites};
 pub use start::{TruePose, draw_start};

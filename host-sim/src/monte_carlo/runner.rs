@@ -14,6 +14,10 @@ use crate::scenario::Setting;
 use edgeloc::database::{OpenError, TopologicalDatabase, WriteError};
 use edgeloc::localize::Localizer;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 /// The results of a run.
@@ -25,26 +29,72 @@ pub struct RunOutcome {
     pub look_times: Vec<Vec<Duration>>,
 }
 
+/// One trial as it ended.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TimedTrial {
+    /// Index of its row.
+    pub row: usize,
+    /// What is kept of it.
+    pub record: TrialRecord,
+    /// Wall time of the localiser for each look.
+    pub look_times: Vec<Duration>,
+}
+
+impl RunOutcome {
+    /// The results of trials that ended in any order.
+    #[must_use]
+    pub fn of(mut trials: Vec<TimedTrial>) -> Self {
+        trials.sort_by_key(|trial| (trial.row, trial.record.trial));
+        let (records, look_times) = trials.into_iter().map(|trial| (trial.record, trial.look_times)).unzip();
+        Self { records, look_times }
+    }
+}
+
+/// Which trials of a run are to be done, and when to stop early.
+pub struct Part<'p> {
+    /// Indices of the trials, of every row that has them.
+    pub trials: Range<u32>,
+    /// Whether a trial, by the index of its row and its own, was done before.
+    pub is_done: &'p (dyn Fn(usize, u32) -> bool + Sync),
+    /// Asked before each trial; the rest is left out once it is true.
+    pub should_stop: &'p (dyn Fn() -> bool + Sync),
+}
+
+impl fmt::Debug for Part<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Part").field("trials", &self.trials).finish_non_exhaustive()
+    }
+}
+
 /// Runs all trials of the scenario that `sites` were prepared for, in the current thread pool, and tells `on_trial` of each
 /// as it ends.
 ///
 /// # Errors
 /// When a map can't be learned.
 pub fn run(sites: &Sites, on_trial: &(dyn Fn(&TrialRecord) + Sync)) -> Result<RunOutcome, RunError> {
-    let trials = sites.settings().iter().map(|setting| setting.scenario.trials).max().unwrap_or(0);
+    let trials = Mutex::new(Vec::new());
+    let keep = |trial: TimedTrial| {
+        on_trial(&trial.record);
+        trials.lock().unwrap_or_else(PoisonError::into_inner).push(trial);
+    };
+    let all = Part { trials: 0..sites.trials(), is_done: &|_, _| false, should_stop: &|| false };
+    run_part(sites, &all, &keep)?;
+    Ok(RunOutcome::of(trials.into_inner().unwrap_or_else(PoisonError::into_inner)))
+}
+
+/// Runs a part of the trials and hands each to `on_trial` as it ends, in any order and from any thread.
+///
+/// # Errors
+/// When a map can't be learned.
+pub fn run_part(sites: &Sites, part: &Part<'_>, on_trial: &(dyn Fn(TimedTrial) + Sync)) -> Result<(), RunError> {
     let trials_per_map = sites.trials_per_map();
-    let maps: Vec<u32> = (0..trials.div_ceil(trials_per_map)).collect();
+    let maps: Vec<u32> = (part.trials.start / trials_per_map..part.trials.end.div_ceil(trials_per_map)).collect();
     // Maps of few trials are worked on together, so that every thread has something to do.
     let at_once = (8 * rayon::current_num_threads()).div_ceil(trials_per_map as usize);
-    let mut trials: Vec<Timed> = Vec::new();
     for maps in maps.chunks(at_once) {
-        let blocks = maps.par_iter().map(|&map| run_block(sites, map, on_trial));
-        let blocks: Vec<Vec<Timed>> = blocks.collect::<Result<_, _>>()?;
-        trials.extend(blocks.into_iter().flatten());
+        maps.par_iter().try_for_each(|&map| run_block(sites, part, map, on_trial))?;
     }
-    trials.sort_by_key(|(row, record, _)| (*row, record.trial));
-    let (records, look_times) = trials.into_iter().map(|(_, record, times)| (record, times)).unzip();
-    Ok(RunOutcome { records, look_times })
+    Ok(())
 }
 
 /// Runs one trial of a setting again, or a robot put down at a pose of one's own, and tells `watch` of every look.
@@ -72,19 +122,25 @@ pub fn replay(
     Ok(Trial { site, setting, trial, map, map_bytes, start }.run(database, &mut memory, &mut looks, watch))
 }
 
-/// Index of the row, record, wall time of each look.
-type Timed = (usize, TrialRecord, Vec<Duration>);
-
-/// The trials that share one draw of the map's noise.
-fn run_block(sites: &Sites, map: u32, on_trial: &(dyn Fn(&TrialRecord) + Sync)) -> Result<Vec<Timed>, RunError> {
+/// Runs the trials of a part that share one draw of the map's noise.
+fn run_block(sites: &Sites, part: &Part<'_>, map: u32, on_trial: &(dyn Fn(TimedTrial) + Sync)) -> Result<(), RunError> {
     let settings = sites.settings();
     let first = map * sites.trials_per_map();
     let last = first.saturating_add(sites.trials_per_map());
-    let runs = |row: usize, trial: u32| trial < settings[row].scenario.trials;
+    let trials = first.max(part.trials.start)..last.min(part.trials.end);
+    let is_open = |row: usize, trial: u32| trial < settings[row].scenario.trials && !(part.is_done)(row, trial);
+    let poses = same(settings.len(), |a, b| sites.share_pose(a, b));
+    let open_rows = |trial: u32, rows: &[usize]| -> (u32, Vec<usize>) {
+        (trial, rows.iter().copied().filter(|&row| is_open(row, trial)).collect())
+    };
+    let tasks = trials.flat_map(|trial| poses.iter().map(move |rows| (trial, rows)));
+    let tasks: Vec<(u32, Vec<usize>)> =
+        tasks.map(|(trial, rows)| open_rows(trial, rows)).filter(|(_, rows)| !rows.is_empty()).collect();
 
+    let is_needed = |row: usize| tasks.iter().any(|(_, rows)| rows.contains(&row));
     let kinds: Vec<Vec<usize>> = same(settings.len(), |a, b| sites.share_map(a, b))
         .into_iter()
-        .filter(|rows| rows.iter().any(|&row| runs(row, first)))
+        .filter(|rows| rows.iter().any(|&row| is_needed(row)) && !(part.should_stop)())
         .collect();
     let learn = |rows: &Vec<usize>| sites.of_row(rows[0]).learn_map(&settings[rows[0]].scenario, map);
     let bytes: Vec<Vec<u8>> = kinds.par_iter().map(learn).collect::<Result<_, _>>()?;
@@ -94,28 +150,25 @@ fn run_block(sites: &Sites, map: u32, on_trial: &(dyn Fn(&TrialRecord) + Sync)) 
         rows.iter().for_each(|&row| maps[row] = Some(opened));
     }
 
-    let poses = same(settings.len(), |a, b| sites.share_pose(a, b));
-    let tasks: Vec<(u32, &Vec<usize>)> =
-        (first..last).flat_map(|trial| poses.iter().map(move |rows| (trial, rows))).collect();
-    let run_rows = |memory: &mut Vec<u64>, (trial, rows): (u32, &Vec<usize>)| {
-        let rows: Vec<usize> = rows.iter().copied().filter(|&row| runs(row, trial)).collect();
-        let Some(&any) = rows.first() else { return Vec::new() };
+    let run_rows = |memory: &mut Vec<u64>, (trial, rows): &(u32, Vec<usize>)| {
+        let Some(&any) = rows.first() else { return };
         let (site, Setting { row, scenario }) = (sites.of_row(any), &settings[any]);
-        let start = draw_start(site, scenario, row.start, trial);
-        let mut looks = Looks::new(site, scenario.seed, trial, map, start);
-        let run_row = |row: usize| {
-            let mut times = Vec::new();
-            let (database, map_bytes) = maps[row].expect("a row with trials here has a map");
-            let trial = Trial { site: sites.of_row(row), setting: &settings[row], trial, map, map_bytes, start };
-            let record = trial.run(database, memory, &mut looks, |look| times.push(look.localizer_time));
-            on_trial(&record);
-            (row, record, times)
-        };
-        rows.into_iter().map(run_row).collect::<Vec<Timed>>()
+        let start = draw_start(site, scenario, row.start, *trial);
+        let mut looks = Looks::new(site, scenario.seed, *trial, map, start);
+        for &row in rows {
+            // A map is missing only when the run was told to stop before it was learned.
+            let Some((database, map_bytes)) = maps[row].filter(|_| !(part.should_stop)()) else { return };
+            let mut look_times = Vec::new();
+            let trial =
+                Trial { site: sites.of_row(row), setting: &settings[row], trial: *trial, map, map_bytes, start };
+            let record = trial.run(database, memory, &mut looks, |look| look_times.push(look.localizer_time));
+            on_trial(TimedTrial { row, record, look_times });
+        }
     };
     let needed = |row: usize| maps[row].map_or(0, |(map, _)| memory_len(&settings[row], map.node_count()));
     let memory_len = (0..settings.len()).map(needed).max().unwrap_or(0);
-    Ok(tasks.into_par_iter().map_init(|| vec![0; memory_len], run_rows).flatten_iter().collect())
+    tasks.par_iter().for_each_init(|| vec![0; memory_len], run_rows);
+    Ok(())
 }
 
 /// The numbers below `count` in groups of the same, in order of their first member.

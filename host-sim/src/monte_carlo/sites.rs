@@ -51,6 +51,12 @@ impl Sites {
         &self.sites[self.site_of_row[row]]
     }
 
+    /// Trials of the row that has most of them.
+    #[must_use]
+    pub fn trials(&self) -> u32 {
+        self.settings.iter().map(|setting| setting.scenario.trials).max().unwrap_or(0)
+    }
+
     pub(super) const fn trials_per_map(&self) -> u32 {
         self.trials_per_map
     }

@@ -5,8 +5,13 @@ use super::{Outcome, Site, TrialRecord, TruePose};
 use crate::scenario::Setting;
 use edgeloc::database::{NodeId, TopologicalDatabase};
 use edgeloc::geometry::{Heading, Scene, Segment2};
-use edgeloc::localize::{Decision, HeadingPrior, Localizer, Look, Motion, ObserveError};
+use edgeloc::localize::{Decision, HeadingPrior, Localizer, Look, Motion, ObserveError, StartError};
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
+
+/// Longest message that a record keeps of a panic.
+const MESSAGE_CHARS: usize = 200;
 
 /// What happened at one look, for those who watch a trial.
 #[derive(Debug)]
@@ -40,17 +45,38 @@ pub(super) struct Trial<'s> {
 
 impl<'s> Trial<'s> {
     /// Lets the robot look around until the localiser decides; tells `watch` of every look.
+    ///
+    /// A localiser that refuses or panics ends the trial with [`Outcome::Error`] and its words: a failure is counted,
+    /// never dropped, and never takes the other trials with it.
     pub(super) fn run(
         &self,
         database: TopologicalDatabase<'_>,
         memory: &mut [u64],
         looks: &mut Looks<'s>,
-        mut watch: impl FnMut(&LookEvent<'_>),
+        watch: impl FnMut(&LookEvent<'_>),
     ) -> TrialRecord {
         let mut record = self.record_at_start(&database);
-        let config = self.setting.localizer_config();
-        let mut localizer =
-            Localizer::new(database, &config, memory).expect("a checked scenario and memory of the stated length");
+        // Whatever a panic leaves half done is not read again: the record says so, memory is divided anew.
+        let attempt = AssertUnwindSafe(|| self.look_around(&mut record, database, memory, looks, watch));
+        let message = match catch_unwind(attempt) {
+            Ok(Ok(())) => return record,
+            Ok(Err(error)) => error.to_string(),
+            Err(panic) => format!("panicked: {}", words_of(panic.as_ref())),
+        };
+        record.outcome = Outcome::Error;
+        record.message = Some(message);
+        record
+    }
+
+    fn look_around(
+        &self,
+        record: &mut TrialRecord,
+        database: TopologicalDatabase<'_>,
+        memory: &mut [u64],
+        looks: &mut Looks<'s>,
+        mut watch: impl FnMut(&LookEvent<'_>),
+    ) -> Result<(), StartError> {
+        let mut localizer = Localizer::new(database, &self.setting.localizer_config(), memory)?;
         let (mut heading, mut motion) = (self.start.heading, None);
         loop {
             let was_candidate: Vec<bool> =
@@ -85,8 +111,8 @@ impl<'s> Trial<'s> {
                     motion = Some(Motion::exact_turn(turn));
                 }
                 last => {
-                    self.record_end(&mut record, &last, &localizer, &was_candidate);
-                    return record;
+                    self.record_end(record, &last, &localizer, &was_candidate);
+                    return Ok(());
                 }
             }
         }
@@ -154,4 +180,11 @@ impl<'s> Trial<'s> {
         record.truth_score =
             nearest.into_iter().filter(|node| was_candidate[*node as usize]).map(score_of).reduce(f64::max);
     }
+}
+
+/// What a panic said.
+fn words_of(panic: &(dyn Any + Send)) -> String {
+    let words = panic.downcast_ref::<&str>().map(|words| (*words).to_owned());
+    let words = words.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "without words".to_owned());
+    words.chars().take(MESSAGE_CHARS).collect()
 }

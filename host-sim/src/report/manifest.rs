@@ -1,6 +1,7 @@
-//! Where a run comes from: program, command, machine, world, time. `manifest.json` is written last, so a folder that
-//! has it is complete.
+//! Where a run comes from: program, command, machine, world, time. `manifest.json` is written when the run begins and again,
+//! last of all, when it ends: a run is complete when its manifest says when it was finished.
 
+use crate::monte_carlo::Shard;
 use crate::scenario::{Building, Scenario, VisibilityChoice, WorldChoice};
 use crate::world::WireframeWorld;
 use serde::{Deserialize, Serialize};
@@ -24,11 +25,14 @@ pub struct Manifest {
     pub host: HostFacts,
     /// Start, RFC 3339 in UTC.
     pub started_utc: String,
-    /// End, RFC 3339 in UTC.
-    pub finished_utc: String,
+    /// End, RFC 3339 in UTC; none while the run is not complete.
+    pub finished_utc: Option<String>,
+    /// Which part of the run this is; none when it is the whole.
+    #[serde(default)]
+    pub shard: Option<Shard>,
     /// Rows of trials.
     pub rows: usize,
-    /// Trials of all rows together.
+    /// Trials of all rows together, in this part.
     pub trials: usize,
 }
 
@@ -79,28 +83,48 @@ pub struct HostFacts {
 }
 
 impl Manifest {
-    /// The manifest of a run in `world` that began at `started` and ends now.
+    /// The manifest of a run of `trials` in `world` that begins at `started`, or of a `shard` of it.
     #[must_use]
     pub fn new(
         scenario: &Scenario,
         world: WorldFacts,
         used_threads: usize,
+        shard: Option<Shard>,
         trials: usize,
         started: jiff::Timestamp,
     ) -> Self {
         Self {
             program_version: env!("CARGO_PKG_VERSION").to_owned(),
             git_commit: option_env!("EDGELOC_GIT_COMMIT").map(str::to_owned),
-            command: std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect(),
+            command: Self::command_line(),
             scenario: scenario.name.clone(),
             seed: scenario.seed,
             world,
             host: HostFacts::new(used_threads),
             started_utc: format!("{started:.0}"),
-            finished_utc: format!("{:.0}", jiff::Timestamp::now()),
+            finished_utc: None,
+            shard,
             rows: scenario.rows.len(),
             trials,
         }
+    }
+
+    /// The command line of this process.
+    #[must_use]
+    pub fn command_line() -> Vec<String> {
+        std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect()
+    }
+
+    /// The same, of a run that is complete now.
+    #[must_use]
+    pub fn finished(self) -> Self {
+        Self { finished_utc: Some(format!("{:.0}", jiff::Timestamp::now())), ..self }
+    }
+
+    /// Whether the same program made both runs: version and commit.
+    #[must_use]
+    pub fn is_of_same_program(&self, other: &Self) -> bool {
+        self.program_version == other.program_version && self.git_commit == other.git_commit
     }
 }
 

@@ -5,6 +5,7 @@
 
 mod axes;
 mod charts;
+mod comparison;
 mod document;
 mod drawing;
 mod explanation;
@@ -12,7 +13,9 @@ mod figure_chart;
 mod figure_lines;
 mod figures_page;
 mod floor_plan;
+mod journal;
 mod manifest;
+mod merge;
 mod page;
 mod pareto_chart;
 mod run_folder;
@@ -27,13 +30,16 @@ mod trials_plan;
 mod sample;
 
 pub use charts::{looks_histogram, rate_strip, success_by_distance};
+pub use comparison::{Comparison, NotPaired, Pairs, RunRow, Side};
 pub use drawing::to_svg_file;
 pub use explanation::{LookExplanation, NodeStanding, scene_drawing, sight};
 pub use figure_chart::figure_chart;
 pub use figure_lines::{FigureLine, TestKind, figure_lines, figures_csv};
 pub use figures_page::{figures_page, power_sentence};
 pub use floor_plan::{FloorPlan, FreeCells};
+pub use journal::Journal;
 pub use manifest::{HostFacts, Manifest, WorldFacts};
+pub use merge::{MergeError, ShardResults, merge};
 pub use page::{page, replay_command};
 pub use pareto_chart::{Cost, pareto_chart};
 pub use run_folder::{RunFolder, RunFolderError, RunResults};

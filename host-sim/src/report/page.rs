@@ -263,11 +263,12 @@ fn facts(results: &RunResults, has_world: bool) -> Markup {
             dl {
                 dt { "program" } dd { "edgeloc " (manifest.program_version) @if let Some(commit) = &manifest.git_commit { ", commit " code { (short_commit(commit)) } } }
                 dt { "command" } dd { code { (manifest.command.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ")) } }
+                @if let Some(shard) = manifest.shard { dt { "shard" } dd { (shard) " of the run: these figures are of its trials alone" } }
                 dt { "seed" } dd { (manifest.seed) }
                 dt { "wall time" } dd { (format!("{:.1} s: {:.1} s to prepare, {:.1} s for learning and trials", timings.total_s(), timings.prepare_s, timings.trials_s)) }
                 dt { "machine" } dd { (host.processor.as_deref().unwrap_or("unnamed processor")) ", " (host.architecture) ", " (host.os) }
                 dt { "threads" } dd { (host.used_threads) " of " (host.available_threads) }
-                dt { "finished" } dd { (manifest.finished_utc) }
+                dt { "finished" } dd { (manifest.finished_utc.as_deref().unwrap_or("not yet")) }
             }
         }
     } }

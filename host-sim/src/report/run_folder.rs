@@ -1,9 +1,12 @@
 //! The folder of a run: `manifest.json`, `scenario.toml`, `trials.csv`, `nodes.csv`, `summary.json`, `timings.json`,
 //! `look_times.csv`, `report.html`.
 //!
-//! Every file is written under another name and renamed, so that none is ever half there. A folder is never reused.
+//! Every file but the journal is written under another name and renamed, so that none is ever half there. A folder is never
+//! reused. It is made when the run begins, with `manifest.json`, `scenario.toml` and a journal of the trials that ended, from
+//! which an interrupted run goes on; when the run is complete, the results take the journal's place.
 
-use super::{Manifest, RunTimings, Summary, timings::look_times_csv, trials_csv};
+use super::timings::{look_times_csv, read_look_times};
+use super::{Journal, Manifest, RunTimings, Summary, trials_csv};
 use crate::monte_carlo::TrialRecord;
 use crate::scenario::{Row, Scenario, ScenarioError};
 use edgeloc::geometry::Point2;
@@ -16,9 +19,10 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use thiserror::Error;
 
-/// Longest file read back \[bytes\]: 512 for each trial of the largest run; the longest line of `trials.csv`, with a
-/// row name of nothing but quotes, has about 420.
-const MAX_FILE_BYTES: u64 = 512 * Scenario::MAX_TOTAL_TRIALS;
+/// Longest file read back \[bytes\]: 4096 for each trial of the largest run. The longest line of `trials.csv` has about 450
+/// of a record with a row name of nothing but quotes, 1600 of a message with nothing but wide characters, and 30 for each
+/// of some 50 parameters.
+const MAX_FILE_BYTES: u64 = 4096 * Scenario::MAX_TOTAL_TRIALS;
 
 /// All that is known of a finished run.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,11 +81,43 @@ impl RunFolder {
     /// # Errors
     /// When it is not one.
     pub fn open(path: &Path) -> Result<Self, RunFolderError> {
-        if path.join("manifest.json").is_file() {
-            Ok(Self { path: path.to_owned() })
-        } else {
-            Err(RunFolderError::NotARun { path: path.to_owned() })
+        let (folder, manifest) = Self::open_any(path)?;
+        match manifest.finished_utc {
+            Some(_) => Ok(folder),
+            None => Err(RunFolderError::Unfinished { path: path.to_owned() }),
         }
+    }
+
+    /// The folder of a run that was interrupted, with what is known of it.
+    ///
+    /// # Errors
+    /// When it is not one.
+    pub fn open_unfinished(path: &Path) -> Result<(Self, Manifest, Scenario), RunFolderError> {
+        let (folder, manifest) = Self::open_any(path)?;
+        if manifest.finished_utc.is_some() {
+            return Err(RunFolderError::Finished { path: path.to_owned() });
+        }
+        let scenario = folder.read_scenario()?;
+        Ok((folder, manifest, scenario))
+    }
+
+    fn open_any(path: &Path) -> Result<(Self, Manifest), RunFolderError> {
+        let folder = Self { path: path.to_owned() };
+        if !path.join("manifest.json").is_file() {
+            return Err(RunFolderError::NotARun { path: path.to_owned() });
+        }
+        let manifest = folder.read_json("manifest.json")?;
+        Ok((folder, manifest))
+    }
+
+    /// Writes what is known when a run begins.
+    ///
+    /// # Errors
+    /// When a file can't be written.
+    pub fn begin(&self, manifest: &Manifest, scenario: &Scenario) -> Result<(), RunFolderError> {
+        self.write("scenario.toml", scenario.to_toml().as_bytes())?;
+        self.write("manifest.json", &to_json(manifest))?;
+        Ok(())
     }
 
     /// Its path.
@@ -124,6 +160,8 @@ impl RunFolder {
         self.write("summary.json", &to_json(&results.summary))?;
         self.write("timings.json", &to_json(&results.timings))?;
         self.write("manifest.json", &to_json(&results.manifest))?;
+        // The results hold all that is in it. Without it nothing is lost, with it nothing is wrong.
+        let _ = fs::remove_file(self.path.join(Journal::FILE));
         Ok(())
     }
 
@@ -132,9 +170,7 @@ impl RunFolder {
     /// # Errors
     /// When a file is missing or is not what it should be.
     pub fn read_results(&self) -> Result<RunResults, RunFolderError> {
-        let scenario_text = self.read("scenario.toml")?;
-        let scenario = Scenario::parse(&scenario_text, &self.path.join("scenario.toml").display().to_string())?;
-        scenario.check().map_err(|illegal| self.damaged("scenario.toml", &illegal))?;
+        let scenario = self.read_scenario()?;
         let settings = scenario.settings().map_err(|illegal| self.damaged("scenario.toml", &illegal))?;
         let lines: Vec<NodeLine> = self.read_table("nodes.csv")?;
         let nodes_of = |row: &Row| {
@@ -151,6 +187,23 @@ impl RunFolder {
             summary: self.read_json("summary.json")?,
             timings: self.read_json("timings.json")?,
         })
+    }
+
+    fn read_scenario(&self) -> Result<Scenario, RunFolderError> {
+        let text = self.read("scenario.toml")?;
+        let scenario = Scenario::parse(&text, &self.path.join("scenario.toml").display().to_string())?;
+        scenario.check().map_err(|illegal| self.damaged("scenario.toml", &illegal))?;
+        Ok(scenario)
+    }
+
+    /// Reads the wall times of the looks of `records` back.
+    ///
+    /// # Errors
+    /// When the file is missing or is not what it should be.
+    pub fn read_look_times(&self, records: &[TrialRecord]) -> Result<Vec<Vec<Duration>>, RunFolderError> {
+        let path = self.path.join("look_times.csv");
+        let file = fs::File::open(&path).map_err(|source| RunFolderError::Read { path, source })?;
+        read_look_times(file, records).map_err(|error| self.damaged("look_times.csv", &error))
     }
 
     /// Lets `latest` beside the folder point at it, where the system has symbolic links.
@@ -255,6 +308,27 @@ pub enum RunFolderError {
         /// The folder.
         path: PathBuf,
     },
+    /// The run was interrupted, or is still under way.
+    #[error("the run in {} is not finished", path.display())]
+    #[diagnostic(help("finish it, where it was interrupted: edgeloc run --resume {}", path.display()))]
+    Unfinished {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// There is nothing to resume.
+    #[error("the run in {} is finished", path.display())]
+    #[diagnostic(help("look at it: edgeloc report {}", path.display()))]
+    Finished {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// Another process works on the run.
+    #[error("the run in {} is under way: another process writes its journal", path.display())]
+    #[diagnostic(help("wait for that process, or end it; then edgeloc run --resume {}", path.display()))]
+    UnderWay {
+        /// The folder.
+        path: PathBuf,
+    },
     /// A file is not what the program wrote.
     #[error("{} is damaged or of another version: {reason}", path.display())]
     Damaged {
@@ -289,6 +363,8 @@ mod tests {
         folder.write_results(&results, &look_times).expect("written");
         let read = RunFolder::open(folder.path()).expect("a run").read_results().expect("readable");
         assert!(read == results, "something changed on the way through the folder");
+        let one_look = folder.read_look_times(&results.records).expect("readable");
+        assert_eq!(one_look, look_times);
     }
 
     #[test]
@@ -309,7 +385,13 @@ mod tests {
         let parent = tempfile::tempdir().expect("a temporary folder");
         let folder = RunFolder::create(parent.path(), "2026-01-02", "hall").expect("a new folder");
         assert!(matches!(RunFolder::open(folder.path()), Err(RunFolderError::NotARun { .. })));
-        folder.write_results(&sample::run().results, &[]).expect("written");
+        let results = sample::run().results;
+        folder.begin(&Manifest { finished_utc: None, ..results.manifest.clone() }, &results.scenario).expect("written");
+        assert!(matches!(RunFolder::open(folder.path()), Err(RunFolderError::Unfinished { .. })));
+        let (_, _, scenario) = RunFolder::open_unfinished(folder.path()).expect("an unfinished run");
+        assert_eq!(scenario, results.scenario);
+        folder.write_results(&results, &[]).expect("written");
+        assert!(matches!(RunFolder::open_unfinished(folder.path()), Err(RunFolderError::Finished { .. })));
         folder.write("trials.csv", b"row,trial\nnear,many\n").expect("written");
         let error = folder.read_results().expect_err("damaged").to_string();
         assert!(error.contains("trials.csv"), "{error}");

@@ -41,7 +41,7 @@ pub(crate) fn run() -> Sample {
     let summary = Summary::new(&scenario, &nodes, 120.0, &records);
     let world = world();
     let facts = WorldFacts::new(&world, &scenario.world);
-    let manifest = Manifest::new(&scenario, facts, 2, records.len(), jiff::Timestamp::UNIX_EPOCH);
+    let manifest = Manifest::new(&scenario, facts, 2, None, records.len(), jiff::Timestamp::UNIX_EPOCH).finished();
     let results = RunResults { manifest, scenario, nodes, records, summary, timings };
     Sample { results, world, free: FreeCells { centers, origin: Point2::default(), side_m: 0.1 } }
 }

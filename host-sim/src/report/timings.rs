@@ -3,6 +3,7 @@
 use crate::monte_carlo::TrialRecord;
 use crate::scenario::Row;
 use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
 use std::time::Duration;
 
 /// Wall times of a run.
@@ -76,4 +77,16 @@ pub(super) fn look_times_csv(records: &[TrialRecord], look_times: &[Vec<Duration
         }
     }
     writer.into_inner().map_err(|error| csv::Error::from(error.into_error()))
+}
+
+/// The wall times of the looks of each of `records`, read back.
+pub(super) fn read_look_times(file: impl std::io::Read, records: &[TrialRecord]) -> Result<Vec<Vec<Duration>>, String> {
+    let mut of_trial: HashMap<(String, u32), Vec<Duration>> = HashMap::new();
+    for line in csv::Reader::from_reader(file).into_deserialize() {
+        let (row, trial, _, seconds): (String, u32, u32, f64) = line.map_err(|error| error.to_string())?;
+        let time = Duration::try_from_secs_f64(seconds).map_err(|error| error.to_string())?;
+        of_trial.entry((row, trial)).or_default().push(time);
+    }
+    let times = records.iter().map(|record| of_trial.remove(&(record.row.clone(), record.trial)).unwrap_or_default());
+    Ok(times.collect())
 }
