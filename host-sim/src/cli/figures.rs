@@ -27,6 +27,10 @@ success_rate_low, success_rate_high, mean_looks, mean_localizer_s, test (default
 differ, none), only_default and only_setting (trials that just one of the two got right), difference, difference_low, \
 difference_high, p, p_holm (Holm's correction over the study), paper_success_rate, paper_time_s";
 
+/// What an interrupted study has settled already.
+const NOT_WITH_RESUME: [&str; 11] =
+    ["study", "paper_scale", "anywhere", "from", "world", "settings", "trials", "nodes", "seed", "print_config", "out"];
+
 /// Run the paper's study: the settings of its figures 4 and 5 on common random numbers, beside what it states.
 ///
 /// The 22 settings of the bundled scenario figures, 900 trials each: B_th (4a), the uncertainty sources one by one (4b),
@@ -35,6 +39,7 @@ difference_high, p, p_holm (Holm's correction over the study), paper_success_rat
 #[derive(Debug, Args)]
 #[command(after_help = format!(
     "Examples:\n  edgeloc figures\n  edgeloc figures --trials 100 --anywhere\n  edgeloc figures --paper-scale\n  \
+     edgeloc figures --resume runs/latest             after Ctrl-C or a power cut\n  \
      edgeloc figures my-study.toml --threads 2\n  edgeloc figures --from runs/latest\n  \
      edgeloc figures --print-config > my-study.toml\n\n\
      In a study of one's own, a row called \"turn: 60 degrees\" is the setting \"60 degrees\" of the figure \"turn\", and\n\
@@ -53,6 +58,9 @@ pub(super) struct Figures {
     /// Write the figures of a finished run anew, or of shards that were merged, and run nothing.
     #[arg(long, value_name = "RUN", conflicts_with_all = ["study", "paper_scale", "anywhere"])]
     from: Option<PathBuf>,
+    /// Go on with an interrupted study in its folder; the result is that of an uninterrupted one.
+    #[arg(long, value_name = "FOLDER", conflicts_with_all = NOT_WITH_RESUME)]
+    resume: Option<PathBuf>,
     #[command(flatten)]
     changes: ScenarioChanges,
     #[command(flatten)]
@@ -71,9 +79,10 @@ struct FiguresPrinted<'f> {
 
 impl Figures {
     pub(super) fn execute(self) -> Result<()> {
-        let (folder, results) = match &self.from {
-            Some(run) => report::open(run)?,
-            None => {
+        let (folder, results) = match (&self.from, &self.resume) {
+            (Some(run), _) => report::open(run)?,
+            (None, Some(run)) => trials::resume(run, self.how.threads)?,
+            (None, None) => {
                 let Some(scenario) = self.scenario()? else { return Ok(()) };
                 self.announce(&scenario);
                 trials::run(scenario, &self.how)?
