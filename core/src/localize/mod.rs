@@ -5,8 +5,10 @@ mod config;
 mod decision;
 mod localizer;
 mod look;
+mod paper;
 mod prediction;
 mod score_margin;
+mod segment_filter;
 mod workspace;
 
 pub use candidates::{CandidateSet, NodeScore};
