@@ -63,6 +63,12 @@ pub fn length(x: f32, y: f32) -> f32 {
     sqrt(x * x + y * y)
 }
 
+/// `e` to the power `x`.
+#[must_use]
+pub fn exp(x: f32) -> f32 {
+    libm::expf(x)
+}
+
 /// Double precision, for what is worked out rarely and ill-conditioned: the calibration of the cameras.
 pub mod double {
     /// Square root of `x`, correctly rounded.

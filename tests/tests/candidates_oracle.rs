@@ -135,7 +135,10 @@ fn in_naive_words(decision: Decision) -> NaiveDecision {
             NaiveDecision::Localized(localized.node.0 as usize)
         }
         Decision::LookAgain { .. } => NaiveDecision::LookAgain,
-        Decision::Unknown { reason: UnknownReason::SceneTooPoor } => NaiveDecision::Unknown,
+        Decision::Unknown { reason } => {
+            assert_eq!(reason, UnknownReason::SceneTooPoor, "the paper's localiser knows no other reason");
+            NaiveDecision::Unknown
+        }
     }
 }
 

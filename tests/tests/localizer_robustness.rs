@@ -5,7 +5,8 @@
 use edgeloc::database::TopologicalDatabase;
 use edgeloc::geometry::{Angle, Heading, Point2, Scene, Segment2, StereoRig};
 use edgeloc::localize::{
-    ConfigError, Decision, HeadingPrior, Localizer, LocalizerConfig, Look, ObserveError, StartError, UnknownReason,
+    ConfigError, Decision, HeadingPrior, Localizer, LocalizerConfig, Look, Motion, ObserveError, StartError,
+    UnknownReason,
 };
 use edgeloc::pgh::{DistanceKind, PghShape, ShapeError};
 use edgeloc_tests::strategies::{fixed_cases, polarity};
@@ -96,6 +97,7 @@ fn any_config() -> impl Strategy<Value = LocalizerConfig> {
             min_length_px,
             horizontal_exclusion: Angle::from_degrees(exclusion_deg),
             max_segments,
+            verification: None,
         },
     )
 }
@@ -109,6 +111,29 @@ proptest! {
         scene in prop_oneof![4 => vec(extreme_segment(), 0..80), 1 => vec(extreme_segment(), 0..2000)],
     ) {
         observe_all_round(&furnished_map(2), &config, &scene);
+    }
+
+    #[test]
+    fn extreme_scenes_are_survived_when_verifying(
+        scene in prop_oneof![4 => vec(extreme_segment(), 0..80), 1 => vec(extreme_segment(), 0..400)],
+        spread_deg in prop_oneof![Just(0.0_f32), Just(5.0), Just(f32::NAN), Just(f32::INFINITY)],
+        step_m in prop_oneof![Just(0.0_f32), Just(0.5), Just(f32::NAN), Just(1.0e30)],
+    ) {
+        let bytes = furnished_map(2);
+        let database = TopologicalDatabase::open(&bytes).expect("just written");
+        let config = LocalizerConfig { max_looks: 3, ..LocalizerConfig::edgeloc() };
+        let mut memory = vec![0; Localizer::memory_len(&config, 2)];
+        let mut localizer = Localizer::new(database, &config, &mut memory).expect("memory of the length asked for");
+        for degrees in [0.0, 90.0, 180.0, -60.0] {
+            let measured = heading(degrees)
+                .map(|prior| HeadingPrior { standard_deviation: Angle::from_degrees(spread_deg), ..prior });
+            let motion = Motion { step_m: Point2::new(step_m, 0.0), ..Motion::exact_turn(Angle::from_degrees(90.0)) };
+            let look = Look { heading: measured, motion_since_last: Some(motion), scene: Scene::new(&scene) };
+            let decision = localizer.observe(&look).expect("a heading is given");
+            if let Decision::Localized(localized) = decision {
+                prop_assert!((localized.node.0 as usize) < 2);
+            }
+        }
     }
 
     #[test]

@@ -93,6 +93,14 @@ impl<'m> CandidateSet<'m> {
         }
     }
 
+    /// Replaces every node's score after a look; all stay in play.
+    pub(super) fn replace(&mut self, score_q30: impl Fn(NodeId) -> i64) {
+        self.iteration = self.iteration.saturating_add(1);
+        for (id, node) in self.nodes.iter_mut().enumerate() {
+            node.sum_q30 = score_q30(NodeId(id as u32));
+        }
+    }
+
     /// Keeps the leading node and the candidates scoring more than `B_max - B_th / i`.
     ///
     /// As long as no node has scored there is no leader to fall behind, and all stay whatever the margin.

@@ -1,11 +1,11 @@
 //! The parameters of the localiser, all in one place.
 
-use super::ScoreMargin;
+use super::{ScoreMargin, VerificationConfig};
 use crate::geometry::Angle;
 use crate::pgh::{PghShape, ShapeError};
 use core::fmt;
 
-/// Parameters of the paper's localiser.
+/// Parameters of the localiser.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LocalizerConfig {
     /// Shape of the histograms.
@@ -24,6 +24,8 @@ pub struct LocalizerConfig {
     pub horizontal_exclusion: Angle,
     /// Segments kept in a scene and in a prediction, the longest first, 1 to 1024.
     pub max_segments: u16,
+    /// Verify hypotheses about every node, and answer with a pose; without, the paper's localiser answers.
+    pub verification: Option<VerificationConfig>,
 }
 
 impl LocalizerConfig {
@@ -38,6 +40,18 @@ impl LocalizerConfig {
             min_length_px: 12.0,
             horizontal_exclusion: Angle::from_degrees(5.0),
             max_segments: 150,
+            verification: None,
+        }
+    }
+
+    /// The verifying localiser: turns of 60 degrees bring new content, six of them are a full circle.
+    #[must_use]
+    pub const fn edgeloc() -> Self {
+        Self {
+            turn: Angle::from_degrees(60.0),
+            max_looks: 6,
+            verification: Some(VerificationConfig::reference()),
+            ..Self::paper()
         }
     }
 
@@ -63,6 +77,9 @@ impl LocalizerConfig {
         if !(1..=1024).contains(&self.max_segments) {
             return Err(ConfigError::MaxSegments);
         }
+        if self.verification.is_some_and(|verification| !verification.is_legal()) {
+            return Err(ConfigError::Verification);
+        }
         Ok(self)
     }
 }
@@ -84,6 +101,8 @@ pub enum ConfigError {
     HorizontalExclusion,
     /// The number of segments is not within 1 to 1024.
     MaxSegments,
+    /// A parameter of the verification is out of its range.
+    Verification,
 }
 
 impl fmt::Display for ConfigError {
@@ -96,6 +115,7 @@ impl fmt::Display for ConfigError {
             Self::MinLength => "least segment length is not within 0 to 2048 px",
             Self::HorizontalExclusion => "horizontal exclusion is not within 0 to below 90 degrees",
             Self::MaxSegments => "number of segments is not within 1 to 1024",
+            Self::Verification => "a parameter of the verification is out of its range",
         })
     }
 }

@@ -1,5 +1,6 @@
 //! What the localiser answers after each look.
 
+use super::Rivals;
 use crate::database::NodeId;
 use crate::geometry::{Angle, Heading, Point2};
 
@@ -43,16 +44,29 @@ pub struct PoseEstimate {
 }
 
 /// Why the localiser can't tell where it is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum UnknownReason {
     /// No look of the attempt showed enough to compare with any node.
     SceneTooPoor,
+    /// What was seen agrees with no place of the map.
+    OutsideMap,
+    /// Several places agree with what was seen, and no look could tell them apart.
+    Indistinguishable(Rivals),
 }
 
 impl core::fmt::Display for UnknownReason {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::SceneTooPoor => f.write_str("no look showed enough edges to compare with any node"),
+            Self::OutsideMap => f.write_str("what was seen agrees with no place of the map"),
+            Self::Indistinguishable(rivals) => {
+                f.write_str("several places agree with what was seen:")?;
+                for (index, rival) in rivals.iter().enumerate() {
+                    let comma = if index == 0 { "" } else { "," };
+                    write!(f, "{comma} {} ({:.0} %)", rival.node, 100.0 * rival.probability)?;
+                }
+                Ok(())
+            }
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The localiser: one verb, whichever method answers.
 
 use super::paper::PaperLocalizer;
+use super::verify::{self, VerifyingLocalizer};
 use super::workspace;
 use super::{CandidateSet, ConfigError, Decision, LocalizerConfig, Look};
 use crate::database::TopologicalDatabase;
@@ -12,16 +13,29 @@ use core::fmt;
 ///
 /// The paper's localiser: every node's model, re-projected at the measured heading, is scored against the scene;
 /// scores accumulate; nodes more than `B_th / i` below the best drop out; when one is left, it is the answer.
+///
+/// The verifying localiser: poses around every node are checked against all looks; the answer is a pose, with its
+/// covariance and a probability, or the reason why there is none.
 #[derive(Debug)]
 pub struct Localizer<'m> {
-    paper: PaperLocalizer<'m>,
+    method: Method<'m>,
+}
+
+#[derive(Debug)]
+#[expect(clippy::large_enum_variant, reason = "a robot has one of them, and no heap to put it on")]
+enum Method<'m> {
+    Paper(PaperLocalizer<'m>),
+    Verifying(VerifyingLocalizer<'m>),
 }
 
 impl<'m> Localizer<'m> {
     /// Number of `u64` of working memory for a configuration and a number of nodes.
     #[must_use]
     pub const fn memory_len(config: &LocalizerConfig, node_count: usize) -> usize {
-        workspace::memory_len(config, node_count)
+        match &config.verification {
+            None => workspace::memory_len(config, node_count),
+            Some(verification) => verify::memory_len(config, verification, node_count),
+        }
     }
 
     /// A localiser in `database`, working in `memory` of at least [`Self::memory_len`] words.
@@ -33,7 +47,11 @@ impl<'m> Localizer<'m> {
         config: &LocalizerConfig,
         memory: &'m mut [u64],
     ) -> Result<Self, StartError> {
-        Ok(Self { paper: PaperLocalizer::new(database, config, memory)? })
+        let method = match &config.verification {
+            None => Method::Paper(PaperLocalizer::new(database, config, memory)?),
+            Some(verification) => Method::Verifying(VerifyingLocalizer::new(database, config, verification, memory)?),
+        };
+        Ok(Self { method })
     }
 
     /// Takes one look into account and decides.
@@ -43,24 +61,38 @@ impl<'m> Localizer<'m> {
     /// # Errors
     /// When the look lacks what the localiser needs; no score and no candidate has changed then.
     pub fn observe(&mut self, look: &Look<'_>) -> Result<Decision, ObserveError> {
-        self.paper.observe(look)
+        match &mut self.method {
+            Method::Paper(paper) => paper.observe(look),
+            Method::Verifying(verifying) => verifying.observe(look),
+        }
     }
 
     /// Forgets all looks: the robot was switched on, or carried away.
     pub fn reset(&mut self) {
-        self.paper.reset();
+        match &mut self.method {
+            Method::Paper(paper) => paper.reset(),
+            Method::Verifying(verifying) => verifying.reset(),
+        }
     }
 
     /// Accumulated scores of all nodes, and which are still candidates; kept after a decision until the next look.
+    ///
+    /// When verifying, a node's score is that of the best pose beside it, over all looks; all stay in play.
     #[must_use]
     pub const fn candidates(&self) -> &CandidateSet<'m> {
-        self.paper.candidates()
+        match &self.method {
+            Method::Paper(paper) => paper.candidates(),
+            Method::Verifying(verifying) => verifying.candidates(),
+        }
     }
 
     /// Segments of the last look that entered the matching.
     #[must_use]
-    pub const fn scene_segment_count(&self) -> usize {
-        self.paper.scene_segment_count()
+    pub fn scene_segment_count(&self) -> usize {
+        match &self.method {
+            Method::Paper(paper) => paper.scene_segment_count(),
+            Method::Verifying(verifying) => verifying.scene_segment_count(),
+        }
     }
 }
 

@@ -7,8 +7,10 @@ mod localizer;
 mod look;
 mod paper;
 mod prediction;
+mod rivals;
 mod score_margin;
 mod segment_filter;
+mod verify;
 mod workspace;
 
 pub use candidates::{CandidateSet, NodeScore};
@@ -17,4 +19,6 @@ pub use decision::{Decision, Localized, PoseEstimate, UnknownReason};
 pub use localizer::{Localizer, ObserveError, StartError};
 pub use look::{HeadingPrior, Look, Motion};
 pub use prediction::predict_view;
+pub use rivals::{Rival, Rivals};
 pub use score_margin::ScoreMargin;
+pub use verify::{Evidence, VerificationConfig};

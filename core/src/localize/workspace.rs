@@ -1,4 +1,4 @@
-//! The localiser's memory: one slice from the caller, divided once.
+//! The paper's localiser's memory: one slice from the caller, divided once.
 
 use super::{LocalizerConfig, NodeScore};
 use crate::geometry::CapacityError;
@@ -44,7 +44,7 @@ impl Lengths {
 /// Number of `u64` that a localiser works on.
 pub(super) const fn memory_len(config: &LocalizerConfig, node_count: usize) -> usize {
     let lengths = Lengths::of(config, node_count);
-    let parts = [
+    sum(&[
         words::<Line>(lengths.lines),
         words::<Line>(lengths.lines),
         words::<i32>(lengths.masses),
@@ -53,7 +53,11 @@ pub(super) const fn memory_len(config: &LocalizerConfig, node_count: usize) -> u
         words::<PanelRow>(lengths.panel_rows),
         words::<i32>(lengths.lines),
         words::<NodeScore>(lengths.nodes),
-    ];
+    ])
+}
+
+/// Saturates, as [`words`] does.
+pub(super) const fn sum(parts: &[usize]) -> usize {
     let (mut total, mut part) = (0_usize, 0);
     while part < parts.len() {
         total = total.saturating_add(parts[part]);
@@ -63,7 +67,7 @@ pub(super) const fn memory_len(config: &LocalizerConfig, node_count: usize) -> u
 }
 
 /// Saturates, so that a configuration out of range asks for more memory than there is and is refused.
-const fn words<T>(count: usize) -> usize {
+pub(super) const fn words<T>(count: usize) -> usize {
     count.saturating_mul(size_of::<T>()).div_ceil(size_of::<u64>())
 }
 
@@ -80,7 +84,7 @@ impl<'m> Workspace<'m> {
             capacity: memory.len(),
             needed: memory_len(config, node_count),
         };
-        let mut rest = Rest { words: memory };
+        let mut rest = Rest::new(memory);
         let mut divide = || {
             Some(Self {
                 scene_lines: rest.take(lengths.lines)?,
@@ -98,12 +102,18 @@ impl<'m> Workspace<'m> {
 }
 
 /// What is left of the caller's memory.
-struct Rest<'m> {
+#[derive(Debug)]
+pub(super) struct Rest<'m> {
     words: &'m mut [u64],
 }
 
 impl<'m> Rest<'m> {
-    fn take<T: FromBytes + IntoBytes>(&mut self, count: usize) -> Option<&'m mut [T]> {
+    pub(super) const fn new(words: &'m mut [u64]) -> Self {
+        Self { words }
+    }
+
+    /// The next `count` items.
+    pub(super) fn take<T: FromBytes + IntoBytes>(&mut self, count: usize) -> Option<&'m mut [T]> {
         let (taken, rest) = core::mem::take(&mut self.words).split_at_mut_checked(words::<T>(count))?;
         self.words = rest;
         let (items, _) = <[T]>::mut_from_prefix_with_elems(taken.as_mut_bytes(), count).ok()?;

@@ -114,7 +114,7 @@ impl Scenario {
 }
 
 fn check_localizer(localizer: &LocalizerSettings) -> Result<(), IllegalValue> {
-    let LocalizerSettings { pgh, .. } = localizer;
+    let LocalizerSettings { pgh, verification, .. } = localizer;
     within("localizer.score_margin", localizer.score_margin, 0.0..=1000.0, "the paper's B_th is 0.1")?;
     within("localizer.turn_deg", localizer.turn_deg, -360.0..=360.0, "the paper turns by 30 degrees")?;
     within("localizer.max_looks", localizer.max_looks, 1..=1000, "12 looks of 30 degrees close the circle")?;
@@ -124,6 +124,18 @@ fn check_localizer(localizer: &LocalizerSettings) -> Result<(), IllegalValue> {
     within("localizer.pgh.distance_bins", pgh.distance_bins, 1..=256, "the paper's best is 15")?;
     within("localizer.pgh.angle_bins", pgh.angle_bins, 1..=256, "the paper's best is 32")?;
     within("localizer.pgh.max_distance_px", pgh.max_distance_px, 1.0..=2048.0, "200 to 600 hardly matter")?;
+    within("localizer.verification.cells_per_side", verification.cells_per_side, 3..=31, "9 is the default")?;
+    require(
+        verification.cells_per_side % 2 == 1,
+        "localizer.verification.cells_per_side",
+        &verification.cells_per_side,
+        "an odd number",
+        || "the node itself lies in the middle; add one".to_owned(),
+    )?;
+    within("localizer.verification.confidence", verification.confidence, 0.0..=100.0, "0.4 is the default")?;
+    within("localizer.verification.refined", verification.refined, 1..=256, "30 is the default")?;
+    let finalists = verification.finalists;
+    within("localizer.verification.finalists", finalists, 1..=verification.refined, "at most as many as are refined")?;
     let covered_px = pgh.max_distance_px * if pgh.signed { 2.0 } else { 1.0 };
     let bin_px = covered_px / f64::from(pgh.distance_bins);
     require(

@@ -1,7 +1,7 @@
 //! The localiser as a scenario states it; by default the paper's.
 
 use edgeloc::geometry::Angle;
-use edgeloc::localize::LocalizerConfig;
+use edgeloc::localize::{LocalizerConfig, VerificationConfig};
 use edgeloc::pgh::{DistanceKind, PghShape};
 use serde::{Deserialize, Serialize};
 
@@ -25,6 +25,8 @@ pub struct LocalizerSettings {
     pub max_segments: u16,
     /// The pairwise geometric histograms.
     pub pgh: PghSettings,
+    /// Geometric verification, with `kind = "edgeloc"`.
+    pub verification: VerificationSettings,
 }
 
 impl Default for LocalizerSettings {
@@ -38,6 +40,7 @@ impl Default for LocalizerSettings {
             horizontal_exclusion_deg: 5.0,
             max_segments: 150,
             pgh: PghSettings::default(),
+            verification: VerificationSettings::default(),
         }
     }
 }
@@ -62,6 +65,10 @@ impl LocalizerSettings {
             min_length_px: self.min_length_px as f32,
             horizontal_exclusion: Angle::from_degrees(self.horizontal_exclusion_deg as f32),
             max_segments: self.max_segments,
+            verification: match self.kind {
+                LocalizerKind::Paper => None,
+                LocalizerKind::Edgeloc => Some(self.verification.config()),
+            },
         }
     }
 }
@@ -72,6 +79,8 @@ impl LocalizerSettings {
 pub enum LocalizerKind {
     /// The paper's: histogram scores summed over looks, candidates within a shrinking margin of the leader.
     Paper,
+    /// Ours: poses about every node checked against all looks, answered with a metric pose.
+    Edgeloc,
 }
 
 /// Size and reading of the pairwise geometric histograms (paper, section 3.2).
@@ -96,6 +105,36 @@ impl Default for PghSettings {
     }
 }
 
+/// Geometric verification: how many poses are tried, and when the best is sure enough.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct VerificationSettings {
+    /// Positions tried along either side of the square about each node; odd.
+    pub cells_per_side: u16,
+    /// Lead of the best over its best rival, times the root of the length seen in 1000 px, that is answered.
+    pub confidence: f64,
+    /// Hypotheses posed more closely after each look.
+    pub refined: u16,
+    /// Hypotheses posed most closely.
+    pub finalists: u16,
+}
+
+impl Default for VerificationSettings {
+    fn default() -> Self {
+        let VerificationConfig { cells_per_side, confidence, refined, finalists } = VerificationConfig::reference();
+        // By way of its shortest decimals: 0.4 and not 0.4000000059604645.
+        let confidence = confidence.to_string().parse().expect("decimals of a number");
+        Self { cells_per_side, confidence, refined, finalists }
+    }
+}
+
+impl VerificationSettings {
+    fn config(&self) -> VerificationConfig {
+        let Self { cells_per_side, confidence, refined, finalists } = *self;
+        VerificationConfig { cells_per_side, confidence: confidence as f32, refined, finalists }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -103,5 +142,16 @@ mod tests {
     #[test]
     fn the_default_is_the_published_localiser() {
         assert_eq!(LocalizerSettings::default().localizer_config(false), LocalizerConfig::paper());
+    }
+
+    #[test]
+    fn ours_is_the_library_s_own() {
+        let ours = LocalizerSettings {
+            kind: LocalizerKind::Edgeloc,
+            turn_deg: 60.0,
+            max_looks: 6,
+            ..LocalizerSettings::default()
+        };
+        assert_eq!(ours.localizer_config(false), LocalizerConfig::edgeloc());
     }
 }

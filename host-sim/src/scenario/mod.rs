@@ -15,7 +15,7 @@ mod row;
 mod world_choice;
 
 pub use error::{IllegalValue, ScenarioError};
-pub use localizer::{LocalizerKind, LocalizerSettings, PghSettings};
+pub use localizer::{LocalizerKind, LocalizerSettings, PghSettings, VerificationSettings};
 pub use preset::{PRESETS, Preset};
 pub use rig::RigSettings;
 pub use row::{Row, Setting, Start};

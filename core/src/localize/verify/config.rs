@@ -1,0 +1,42 @@
+//! The parameters of verification, all in one place.
+
+/// Parameters of the verifying localiser, beside those that every localiser has.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VerificationConfig {
+    /// Positions tried along either side of the square about each node, odd, 3 to 31. How far apart they lie follows
+    /// from the spacing of the nodes, so that the squares reach the neighbours.
+    pub cells_per_side: u16,
+    /// Confidence above which the best hypothesis is answered, 0 to 100: what it is ahead of the best rival a metre or
+    /// more away, times the square root of the length seen in 1000 px.
+    pub confidence: f32,
+    /// Hypotheses that are posed more closely after each look, 1 to 256.
+    pub refined: u16,
+    /// Hypotheses that are posed most closely, 1 to `refined`.
+    pub finalists: u16,
+}
+
+impl VerificationConfig {
+    /// Hypotheses of one node that may be refined: neighbouring cells crowd others out.
+    pub(super) const PER_NODE: usize = 4;
+
+    /// The values that the study of the office settled on.
+    #[must_use]
+    pub const fn reference() -> Self {
+        Self { cells_per_side: 9, confidence: 0.4, refined: 30, finalists: 10 }
+    }
+
+    /// Whether every parameter is in range.
+    pub(crate) fn is_legal(&self) -> bool {
+        let is_odd = self.cells_per_side % 2 == 1;
+        is_odd
+            && (3..=31).contains(&self.cells_per_side)
+            && (0.0..=100.0).contains(&self.confidence)
+            && (1..=256).contains(&self.refined)
+            && (1..=self.refined).contains(&self.finalists)
+    }
+
+    /// Positions tried about each node.
+    pub(super) const fn cells_per_node(&self) -> usize {
+        (self.cells_per_side as usize).saturating_mul(self.cells_per_side as usize)
+    }
+}

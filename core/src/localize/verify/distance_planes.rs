@@ -1,0 +1,124 @@
+//! How far each quarter-resolution pixel lies from the nearest seen segment of an orientation.
+
+use super::SeenSegment;
+use super::channel::{CHANNELS, channel_of, neighbor_of};
+
+/// Pixels of a plane in a row; each is 4 x 4 px of the normal image.
+pub(super) const COLUMNS: usize = 160;
+/// Rows of a plane.
+pub(super) const ROWS: usize = 120;
+/// Pixels of a plane.
+pub(super) const PLANE: usize = COLUMNS * ROWS;
+/// Units of distance from a pixel to the next; 255 units and beyond are far.
+pub(super) const UNITS_PER_PIXEL: i32 = 5;
+const DIAGONAL: u8 = 7;
+
+/// One plane of distances for each orientation channel.
+#[derive(Debug)]
+pub(super) struct DistancePlanes<'m> {
+    planes: &'m mut [u8],
+}
+
+impl<'m> DistancePlanes<'m> {
+    /// Bytes of all planes.
+    pub(super) const BYTES: usize = CHANNELS * PLANE;
+
+    /// Planes in `planes`, [`Self::BYTES`] long, still without meaning.
+    pub(super) fn new(planes: &'m mut [u8]) -> Self {
+        Self { planes }
+    }
+
+    /// The plane of a channel.
+    pub(super) fn plane(&self, channel: usize) -> &[u8] {
+        &self.planes[channel * PLANE..][..PLANE]
+    }
+
+    /// Measures all distances anew, from `segments`: each in its own channel and the next nearest.
+    pub(super) fn redraw(&mut self, segments: &[SeenSegment]) {
+        self.planes.fill(u8::MAX);
+        for segment in segments {
+            let (dx, dy) = segment.direction_q4();
+            let (dx, dy) = (dx as f32, dy as f32);
+            for channel in [channel_of(dx, dy), neighbor_of(dx, dy)] {
+                draw(&mut self.planes[channel * PLANE..][..PLANE], segment);
+            }
+        }
+        for plane in self.planes.chunks_exact_mut(PLANE) {
+            spread(plane);
+        }
+    }
+}
+
+/// Sets the pixels along a segment to their distance from it, measured along the shorter axis.
+fn draw(plane: &mut [u8], segment: &SeenSegment) {
+    let (dx, dy) = segment.direction_q4();
+    let is_steep = dy.abs() > dx.abs();
+    let along_across = |point: [i16; 2]| {
+        let (x, y) = (i32::from(point[0]), i32::from(point[1]));
+        if is_steep { (y, x) } else { (x, y) }
+    };
+    let (mut from, mut to) = (along_across(segment.start_q4), along_across(segment.end_q4));
+    if from.0 > to.0 {
+        (from, to) = (to, from);
+    }
+    // A pixel is 4 px = 64 units of Q4 wide.
+    let run = to.0 - from.0;
+    let slope_q16 = if run == 0 { 0 } else { (i64::from(to.1 - from.1) << 16) / i64::from(run) };
+    let (first, last) = (from.0 >> 6, to.0 >> 6);
+    for along in first..=last {
+        let center = (along * 64 + 32).clamp(from.0, to.0);
+        let across = from.1 + ((slope_q16 * i64::from(center - from.0)) >> 16) as i32;
+        for pixel in [((across - 32) >> 6), ((across - 32) >> 6) + 1] {
+            let distance = ((across - (pixel * 64 + 32)).abs() * UNITS_PER_PIXEL + 32) >> 6;
+            let (column, row) = if is_steep { (pixel, along) } else { (along, pixel) };
+            if (0..COLUMNS as i32).contains(&column) && (0..ROWS as i32).contains(&row) {
+                let cell = &mut plane[row as usize * COLUMNS + column as usize];
+                *cell = (*cell).min(distance as u8);
+            }
+        }
+    }
+}
+
+/// Chamfer distances: two passes, steps of 5 and 7 units.
+fn spread(plane: &mut [u8]) {
+    const STEP: u8 = UNITS_PER_PIXEL as u8;
+    let mut relax = |at: usize, neighbors: [(bool, usize, u8); 4]| {
+        let mut least = plane[at];
+        for (is_inside, neighbor, step) in neighbors {
+            if is_inside {
+                least = least.min(plane[neighbor].saturating_add(step));
+            }
+        }
+        plane[at] = least;
+    };
+    for row in 0..ROWS {
+        for column in 0..COLUMNS {
+            let at = row * COLUMNS + column;
+            let (above, left, right) = (row > 0, column > 0, column + 1 < COLUMNS);
+            relax(
+                at,
+                [
+                    (left, at.wrapping_sub(1), STEP),
+                    (above, at.wrapping_sub(COLUMNS), STEP),
+                    (above && left, at.wrapping_sub(COLUMNS + 1), DIAGONAL),
+                    (above && right, at.wrapping_sub(COLUMNS - 1), DIAGONAL),
+                ],
+            );
+        }
+    }
+    for row in (0..ROWS).rev() {
+        for column in (0..COLUMNS).rev() {
+            let at = row * COLUMNS + column;
+            let (below, left, right) = (row + 1 < ROWS, column > 0, column + 1 < COLUMNS);
+            relax(
+                at,
+                [
+                    (right, at + 1, STEP),
+                    (below, at + COLUMNS, STEP),
+                    (below && right, at + COLUMNS + 1, DIAGONAL),
+                    (below && left, at + COLUMNS - 1, DIAGONAL),
+                ],
+            );
+        }
+    }
+}

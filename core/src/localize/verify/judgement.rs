@@ -1,0 +1,71 @@
+//! From hypotheses to a decision: how sure is the best, and which are its rivals.
+
+use super::hypothesis::Hypothesis;
+use crate::database::{NodeId, TopologicalDatabase};
+use crate::geometry::Point2;
+use crate::localize::{Rival, Rivals};
+use crate::math;
+
+/// Hypotheses nearer to each other than this are the same place \[m\].
+const PLACE_RADIUS_M: f32 = 1.0;
+/// Slope of the log odds of two places over the confidence of one over the other.
+const LOG_ODDS_PER_CONFIDENCE: f32 = 15.0;
+
+/// What the hypotheses come to.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Judgement {
+    pub(super) best: Hypothesis,
+    /// Lead over the best rival, times the square root of the length seen in 1000 px.
+    pub(super) confidence: f32,
+    /// The best and its rivals, with probabilities that sum to one.
+    pub(super) places: Rivals,
+}
+
+/// Judges hypotheses, of which the best comes first; `None` when there are none.
+pub(super) fn judge<'h>(
+    hypotheses: &(impl Iterator<Item = &'h Hypothesis> + Clone),
+    database: &TopologicalDatabase<'_>,
+    seen_q4: i32,
+) -> Option<Judgement> {
+    let best = *hypotheses.clone().reduce(|best, other| if other.score_q20 > best.score_q20 { other } else { best })?;
+    let position = |hypothesis: &Hypothesis| {
+        let node = database.node(hypothesis.node()).map_or(Point2::default(), |node| node.position());
+        hypothesis.position(node)
+    };
+    let scale = math::sqrt(seen_q4 as f32 / 16_000.0) / (1 << 20) as f32;
+    let behind = |hypothesis: &Hypothesis| (best.score_q20 - hypothesis.score_q20) as f32 * scale;
+    let mut places = Rivals::default();
+    let mut confidence = f32::INFINITY;
+    // The best that is a place of its own, again and again until there is no room or none left.
+    loop {
+        let apart = |hypothesis: &&Hypothesis| {
+            let here = position(hypothesis);
+            places.iter().all(|place: &Rival| place.position.distance(here) > PLACE_RADIUS_M)
+        };
+        let next = hypotheses.clone().filter(apart).reduce(|a, b| if b.score_q20 > a.score_q20 { b } else { a });
+        let Some(next) = next else { break };
+        if places.iter().count() == 1 {
+            confidence = behind(next);
+        }
+        let odds = math::exp(-LOG_ODDS_PER_CONFIDENCE * behind(next));
+        let here = position(next);
+        let node = nearest_node(database, here);
+        if !places.push(Rival { node, position: here, probability: odds }) {
+            break;
+        }
+    }
+    places.normalize();
+    Some(Judgement { best, confidence, places })
+}
+
+/// The node nearest to a position.
+pub(super) fn nearest_node(database: &TopologicalDatabase<'_>, position: Point2) -> NodeId {
+    let mut nearest = (NodeId(0), f32::INFINITY);
+    for node in database.nodes() {
+        let distance = node.position().distance(position);
+        if distance < nearest.1 {
+            nearest = (node.id(), distance);
+        }
+    }
+    nearest.0
+}

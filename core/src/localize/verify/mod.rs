@@ -1,0 +1,35 @@
+//! Geometric verification: what would be seen from a pose beside a node, checked against what is seen.
+//!
+//! Per look, seen segments become distance planes, one for each of eight orientations at quarter resolution
+//! ([`distance_planes`]). Per hypothesis, the node's model is projected and looked up in them; how far off it may lie
+//! depends on its depth and on how closely the hypothesis is posed ([`check`]). Evidence adds up over looks **at the
+//! same pose** ([`evidence`]): for every cell of a grid about every node, and, from the segments of all looks, anew for
+//! the best of them posed more closely ([`search`]). The lead of the best place over its rivals decides
+//! ([`judgement`]); least squares give the metric pose ([`pose_fit`]).
+//!
+//! Sums are integers. Projection is plain IEEE single precision in source order, without a function that machines
+//! round differently.
+
+mod channel;
+mod check;
+mod config;
+mod distance_planes;
+mod evidence;
+mod hypothesis;
+mod image_frame;
+mod judgement;
+mod kept_looks;
+mod memory;
+mod pose_fit;
+mod responses;
+mod search;
+mod seen_segment;
+mod spacing;
+mod verifying;
+mod view;
+
+pub use config::VerificationConfig;
+pub use evidence::Evidence;
+pub(super) use memory::memory_len;
+use seen_segment::SeenSegment;
+pub(super) use verifying::VerifyingLocalizer;

@@ -1,0 +1,198 @@
+//! The metric pose with its covariance: model segments laid onto the seen ones, by least squares.
+//!
+//! Each model segment that finds a seen one near it, alike in direction, is one measurement of the distance across it
+//! (its points share the lateral shift of the edge). Three rounds of Gauss and Newton with weights after Cauchy.
+
+use super::check::{Checker, Projected};
+use super::hypothesis::Hypothesis;
+use super::kept_looks::KeptLooks;
+use super::seen_segment::SeenSegment;
+use crate::database::TopologicalDatabase;
+use crate::math;
+
+/// Standard deviation of a segment across itself: 3 px of uniform lateral shift.
+const SHIFT_PX: f32 = 1.8;
+/// Error of the model across itself \[m\].
+const MODEL_M: f32 = 0.02;
+/// Partners lie at most this far off, round after round \[px\].
+const GATES_PX: [f32; 4] = [16.0, 12.0, 9.0, 9.0];
+/// Sine of the greatest difference of partners in direction.
+const MAX_SINE: f32 = 0.12;
+/// A pose that moves farther than this was no fit \[m\].
+const MAX_MOVE_M: f32 = 0.15;
+
+/// A pose and its covariance: x, y \[m\] and heading \[rad\].
+#[derive(Debug, Clone, Copy)]
+pub(super) struct FittedPose {
+    pub(super) offset_m: [f32; 2],
+    pub(super) heading_error_rad: f32,
+    pub(super) covariance: [[f32; 3]; 3],
+}
+
+/// Fits the pose of `hypothesis` to all looks.
+pub(super) fn fit(
+    hypothesis: &Hypothesis,
+    database: &TopologicalDatabase<'_>,
+    checker: &mut Checker<'_>,
+    looks: &KeptLooks<'_>,
+) -> FittedPose {
+    let mut pose = FittedPose {
+        offset_m: hypothesis.offset_m,
+        heading_error_rad: hypothesis.heading_error_rad,
+        covariance: [[0.0; 3]; 3],
+    };
+    for gate_px in GATES_PX {
+        let mut normal = Normal::prior(looks.heading_spread_rad(), pose.heading_error_rad);
+        for look in 0..looks.count() {
+            let (Some(node), at) = (database.node(hypothesis.node()), looks.pose(look)) else { continue };
+            let offset_m = [pose.offset_m[0] + at.way_m[0], pose.offset_m[1] + at.way_m[1]];
+            checker.turn(&node, at.heading_rad + pose.heading_error_rad, (offset_m, 0.05));
+            normal.add_look(checker, offset_m, looks.segments(look), gate_px);
+        }
+        let Some((step, covariance)) = normal.solve() else { return pose };
+        pose.offset_m = [pose.offset_m[0] + step[0], pose.offset_m[1] + step[1]];
+        pose.heading_error_rad += step[2];
+        pose.covariance = covariance;
+    }
+    let moved = math::length(pose.offset_m[0] - hypothesis.offset_m[0], pose.offset_m[1] - hypothesis.offset_m[1]);
+    if moved > MAX_MOVE_M {
+        pose.offset_m = hypothesis.offset_m;
+        pose.heading_error_rad = hypothesis.heading_error_rad;
+    }
+    pose
+}
+
+/// Normal equations of the step (x, y, heading).
+#[derive(Debug)]
+struct Normal {
+    matrix: [[f32; 3]; 3],
+    right: [f32; 3],
+}
+
+impl Normal {
+    /// The position known to half a metre, the heading as the compass has it.
+    fn prior(heading_spread_rad: f32, heading_error_rad: f32) -> Self {
+        let heading_weight = 1.0 / math::max(heading_spread_rad * heading_spread_rad, 1e-10);
+        Self {
+            matrix: [[4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, heading_weight]],
+            right: [0.0, 0.0, -heading_error_rad * heading_weight],
+        }
+    }
+
+    fn add_look(&mut self, checker: &Checker<'_>, offset_m: [f32; 2], seen: &[SeenSegment], gate_px: f32) {
+        let offset = checker.in_camera(offset_m);
+        for segment in checker.view() {
+            let Some(projected) = checker.project(segment, offset) else { continue };
+            if let Some(measurement) = measure(checker, &projected, seen, gate_px) {
+                self.add(&measurement);
+            }
+        }
+    }
+
+    fn add(&mut self, measurement: &Measurement) {
+        let Measurement { slope, distance_px, weight } = measurement;
+        for row in 0..3 {
+            for column in 0..3 {
+                self.matrix[row][column] += weight * slope[row] * slope[column];
+            }
+            self.right[row] -= weight * slope[row] * distance_px;
+        }
+    }
+
+    /// The step and the inverse of the matrix.
+    fn solve(&self) -> Option<([f32; 3], [[f32; 3]; 3])> {
+        let m = &self.matrix;
+        let minor = |r: usize, c: usize| {
+            let (r1, r2, c1, c2) = ((r + 1) % 3, (r + 2) % 3, (c + 1) % 3, (c + 2) % 3);
+            m[r1][c1] * m[r2][c2] - m[r1][c2] * m[r2][c1]
+        };
+        let determinant = m[0][0] * minor(0, 0) + m[0][1] * minor(0, 1) + m[0][2] * minor(0, 2);
+        if !(determinant > 0.0 && determinant.is_finite()) {
+            return None;
+        }
+        let inverse = [0, 1, 2].map(|row: usize| [0, 1, 2].map(|column: usize| minor(column, row) / determinant));
+        let step = inverse.map(|row| row[0] * self.right[0] + row[1] * self.right[1] + row[2] * self.right[2]);
+        Some((step, inverse))
+    }
+}
+
+/// How far a model segment lies from its partner, and how that changes with the pose.
+#[derive(Debug)]
+struct Measurement {
+    slope: [f32; 3],
+    distance_px: f32,
+    weight: f32,
+}
+
+/// Compares a projected segment with the nearest seen one that is alike, at three points along it.
+fn measure(checker: &Checker<'_>, model: &Projected, seen: &[SeenSegment], gate_px: f32) -> Option<Measurement> {
+    let (dx, dy) = (model.end_px[0] - model.start_px[0], model.end_px[1] - model.start_px[1]);
+    let length = math::length(dx, dy);
+    let filter = checker.filter();
+    if length < filter.min_length_px || dy.abs() < filter.horizontal_slope * dx.abs() {
+        return None;
+    }
+    let direction = [dx / length, dy / length];
+    let frame = checker.frame();
+    let (sin, cos) = checker.sin_cos();
+    let (mut slope, mut distance, mut inverse_sum, mut count) = ([0.0_f32; 3], 0.0_f32, 0.0_f32, 0.0_f32);
+    for t in [0.17_f32, 0.5, 0.83] {
+        let point = [model.start_px[0] + dx * t, model.start_px[1] + dy * t];
+        let Some((away, normal)) = nearest(point, direction, seen, gate_px) else { continue };
+        let inverse = model.inverse_depth[0] + (model.inverse_depth[1] - model.inverse_depth[0]) * t;
+        let focal = frame.focal_px;
+        let (u, v) = ((point[0] - frame.center_px[0]) / focal, (point[1] - frame.center_px[1]) / focal);
+        let right = -normal[0] * focal * inverse;
+        let forward = (normal[0] * u + normal[1] * v) * focal * inverse;
+        let turn = focal * (normal[0] * (1.0 + u * u) + normal[1] * u * v);
+        slope[0] += right * sin + forward * cos;
+        slope[1] += forward * sin - right * cos;
+        slope[2] += turn;
+        distance += away;
+        inverse_sum += inverse;
+        count += 1.0;
+    }
+    if count < 1.0 {
+        return None;
+    }
+    let mean_inverse = inverse_sum / count;
+    let model_px = focal_error_px(frame.focal_px, mean_inverse);
+    let variance = SHIFT_PX * SHIFT_PX + model_px * model_px;
+    let distance_px = distance / count;
+    // Short pieces of one edge share its shift: a full measurement takes 60 px.
+    let share = math::min(length / 60.0, 1.0) * count / 3.0;
+    let weight = share / (variance + 0.25 * distance_px * distance_px);
+    Some(Measurement { slope: slope.map(|sum| sum / count), distance_px, weight })
+}
+
+fn focal_error_px(focal_px: f32, inverse_depth: f32) -> f32 {
+    focal_px * MODEL_M * inverse_depth
+}
+
+/// Signed distance of `point` to the nearest seen segment alike in direction, with that segment's normal.
+fn nearest(point: [f32; 2], direction: [f32; 2], seen: &[SeenSegment], gate_px: f32) -> Option<(f32, [f32; 2])> {
+    let mut best: Option<(f32, [f32; 2])> = None;
+    for segment in seen {
+        let start = segment.start_q4.map(|q4| f32::from(q4) * 0.0625);
+        let (dx, dy) = segment.direction_q4();
+        let (dx, dy) = (dx as f32 * 0.0625, dy as f32 * 0.0625);
+        let (px, py) = (point[0] - start[0], point[1] - start[1]);
+        // Unnormalised first: most segments fail here, without a square root.
+        let along = px * dx + py * dy;
+        let square = dx * dx + dy * dy;
+        let across = dx * py - dy * px;
+        if along < 0.0 || along > square || across * across > gate_px * gate_px * square {
+            continue;
+        }
+        let sine = dx * direction[1] - dy * direction[0];
+        if sine * sine > MAX_SINE * MAX_SINE * square {
+            continue;
+        }
+        let length = math::sqrt(square);
+        let away = across / length;
+        if best.is_none_or(|(nearest, _)| away.abs() < nearest.abs()) {
+            best = Some((away, [-dy / length, dx / length]));
+        }
+    }
+    best
+}

@@ -1,0 +1,53 @@
+//! How well a distance agrees with a prediction, given how exact the prediction can be.
+
+use super::channel::CHANNELS;
+use super::distance_planes::{DistancePlanes, PLANE, UNITS_PER_PIXEL};
+use crate::math;
+
+/// Widths of the response, standard deviations in px of the normal image.
+pub(super) const WIDTHS_PX: [f32; 4] = [7.0, 14.0, 28.0, 56.0];
+
+/// `exp(-d^2 / 2 s^2)` in 1/255, for each width and each distance of a plane.
+#[derive(Debug)]
+pub(super) struct Responses {
+    table: [[u8; 256]; WIDTHS_PX.len()],
+    /// The mean response of each channel and width over the image: what chance explains.
+    background: [[u8; WIDTHS_PX.len()]; CHANNELS],
+}
+
+impl Responses {
+    pub(super) fn new() -> Self {
+        let mut table = [[0; 256]; WIDTHS_PX.len()];
+        for (row, width_px) in table.iter_mut().zip(WIDTHS_PX) {
+            for (units, response) in row.iter_mut().enumerate() {
+                let distances = units as f32 * 4.0 / UNITS_PER_PIXEL as f32 / width_px;
+                *response = math::round(255.0 * math::exp(-0.5 * distances * distances)) as u8;
+            }
+            // The greatest distance means: none, or out of reach.
+            row[255] = 0;
+        }
+        Self { table, background: [[0; WIDTHS_PX.len()]; CHANNELS] }
+    }
+
+    /// Measures the background of newly drawn planes.
+    pub(super) fn measure_background(&mut self, planes: &DistancePlanes<'_>) {
+        for (channel, background) in self.background.iter_mut().enumerate() {
+            let mut counts = [0_u32; 256];
+            for distance in planes.plane(channel) {
+                counts[usize::from(*distance)] += 1;
+            }
+            for (mean, table) in background.iter_mut().zip(&self.table) {
+                let sum: u32 = counts.iter().zip(table).map(|(count, response)| count * u32::from(*response)).sum();
+                *mean = (sum / PLANE as u32) as u8;
+            }
+        }
+    }
+
+    pub(super) fn table(&self, width: usize) -> &[u8; 256] {
+        &self.table[width]
+    }
+
+    pub(super) fn background(&self, channel: usize, width: usize) -> u8 {
+        self.background[channel][width]
+    }
+}

@@ -1,0 +1,215 @@
+//! From coarse to close: the grid about every node, then ever closer poses about the best of it.
+
+use super::check::{Checker, Closeness};
+use super::evidence::CellEvidence;
+use super::hypothesis::{Hypothesis, keep_best};
+use super::kept_looks::KeptLooks;
+use super::spacing::reach_m;
+use super::{Evidence, VerificationConfig};
+use crate::database::TopologicalDatabase;
+use crate::math;
+
+/// Poses tried about a hypothesis at a heading: 3 x 3.
+const POSITIONS: usize = 9;
+/// Poses tried about a hypothesis: at three headings.
+pub(super) const CHILDREN: usize = 3 * POSITIONS;
+
+/// How a hypothesis is posed more closely.
+#[derive(Debug, Clone, Copy)]
+struct Stage {
+    /// Step of the position in cells of the grid: stage by stage the poses fill the cell.
+    step: f32,
+    /// Step of the heading, in standard deviations of the compass.
+    heading_step: f32,
+    /// What the position may still be off, in cells of the grid.
+    position_left: f32,
+    /// What the heading may still be off, in standard deviations of the compass.
+    heading_left: f32,
+}
+
+const STAGES: [Stage; 2] = [
+    Stage { step: 1.0 / 3.0, heading_step: 1.0, position_left: 0.15, heading_left: 0.5 },
+    Stage { step: 1.0 / 9.0, heading_step: 0.4, position_left: 0.06, heading_left: 0.2 },
+];
+
+/// All hypotheses.
+#[derive(Debug)]
+pub(super) struct Search<'m> {
+    config: VerificationConfig,
+    /// Distance between neighbouring cells \[m\].
+    cell_m: f32,
+    cells: &'m mut [CellEvidence],
+    ranked: &'m mut [Hypothesis],
+    ranked_count: usize,
+    refined: &'m mut [Hypothesis],
+    refined_count: usize,
+    children: &'m mut [Evidence],
+}
+
+impl<'m> Search<'m> {
+    pub(super) fn new(
+        config: &VerificationConfig,
+        database: &TopologicalDatabase<'_>,
+        (cells, ranked, refined, children): SearchMemory<'m>,
+    ) -> Self {
+        let mut search = Self {
+            config: *config,
+            cell_m: reach_m(database) / f32::from(config.cells_per_side / 2),
+            cells,
+            ranked,
+            ranked_count: 0,
+            refined,
+            refined_count: 0,
+            children,
+        };
+        search.clear();
+        search
+    }
+
+    /// Forgets all evidence.
+    pub(super) fn clear(&mut self) {
+        self.cells.fill(CellEvidence::default());
+        (self.ranked_count, self.refined_count) = (0, 0);
+    }
+
+    /// The best hypotheses, closely posed, the best first; then the best of the grid.
+    pub(super) fn hypotheses(&self) -> impl Iterator<Item = &Hypothesis> + Clone {
+        self.refined[..self.refined_count].iter().chain(&self.ranked[..self.ranked_count])
+    }
+
+    /// Takes the last of `looks` into account.
+    pub(super) fn look(
+        &mut self,
+        database: &TopologicalDatabase<'_>,
+        checker: &mut Checker<'_>,
+        looks: &KeptLooks<'_>,
+    ) {
+        self.check_grid(database, checker, looks);
+        self.refined_count = self.ranked_count.min(self.refined.len());
+        self.refined[..self.refined_count].copy_from_slice(&self.ranked[..self.refined_count]);
+        for (stage, keep) in STAGES.iter().zip([self.config.refined, self.config.finalists]) {
+            self.refine(stage, usize::from(keep), database, checker, looks);
+        }
+    }
+
+    fn check_grid(&mut self, database: &TopologicalDatabase<'_>, checker: &mut Checker<'_>, looks: &KeptLooks<'_>) {
+        let Some(look) = looks.count().checked_sub(1) else { return };
+        checker.draw(looks, look);
+        let pose = looks.pose(look);
+        let side = i32::from(self.config.cells_per_side);
+        let half = side / 2;
+        self.ranked_count = 0;
+        for (node, cells) in database.nodes().zip(self.cells.chunks_exact_mut(self.config.cells_per_node())) {
+            let step_m = self.cell_m;
+            checker.turn(&node, pose.heading_rad, (pose.way_m, (half + 1) as f32 * step_m));
+            let closeness =
+                Closeness { position_m: 0.4 * step_m, heading_rad: looks.heading_spread_rad(), spacing_px: 14.0 };
+            let none = Hypothesis::new(node.id(), [0.0; 2], 0.0);
+            let (mut best, mut count) = ([none; VerificationConfig::PER_NODE], 0);
+            for (index, cell) in (0..).zip(cells) {
+                let (column, row) = (index % side - half, index / side - half);
+                // The corners of the square are beyond the node's reach.
+                if column * column + row * row > half * (half + 1) || cell.is_refuted() {
+                    continue;
+                }
+                let offset_m = [column as f32 * step_m, row as f32 * step_m];
+                cell.add(checker.evidence(moved(offset_m, pose.way_m), &closeness));
+                let mut hypothesis = Hypothesis { evidence: cell.evidence(), ..none };
+                hypothesis.offset_m = offset_m;
+                hypothesis.score_q20 = hypothesis.evidence.score_q20(looks.seen_q4());
+                keep_best(&mut best, &mut count, hypothesis);
+            }
+            self.ranked[self.ranked_count..][..count].copy_from_slice(&best[..count]);
+            self.ranked_count += count;
+        }
+        let ranked = &mut self.ranked[..self.ranked_count];
+        ranked.sort_unstable_by(Hypothesis::rank);
+        if let Some(best) = ranked.first() {
+            let floor_q20 = refutation_floor_q20(best.score_q20, looks.seen_q4());
+            for cell in self.cells.iter_mut() {
+                cell.refute_below(floor_q20, looks.seen_q4());
+            }
+        }
+    }
+
+    /// Poses the first `keep` hypotheses more closely, by all looks, and ranks them anew.
+    fn refine(
+        &mut self,
+        stage: &Stage,
+        keep: usize,
+        database: &TopologicalDatabase<'_>,
+        checker: &mut Checker<'_>,
+        looks: &KeptLooks<'_>,
+    ) {
+        let spread_rad = looks.heading_spread_rad();
+        let headings: usize = if spread_rad > 0.0 { 3 } else { 1 };
+        let poses = headings * POSITIONS;
+        let step_m = stage.step * self.cell_m;
+        let closeness = Closeness {
+            position_m: stage.position_left * self.cell_m,
+            heading_rad: stage.heading_left * spread_rad,
+            spacing_px: 9.0,
+        };
+        let child_of = |parent: &Hypothesis, index: usize| {
+            let (column, row) = ((index % 3) as f32 - 1.0, (index / 3 % 3) as f32 - 1.0);
+            let turn = (index / POSITIONS) as f32 - (headings / 2) as f32;
+            let [x, y] = parent.offset_m;
+            Hypothesis::new(
+                parent.node(),
+                [x + column * step_m, y + row * step_m],
+                parent.heading_error_rad + turn * stage.heading_step * spread_rad,
+            )
+        };
+        let parents = &mut self.refined[..keep.min(self.refined_count)];
+        let children = &mut self.children[..parents.len() * poses];
+        children.fill(Evidence::default());
+        // The look that is drawn comes first, to spare a drawing.
+        let count = looks.count();
+        let is_last_drawn = count > 0 && checker.drawn_look() == Some(count - 1);
+        for order in 0..count {
+            let look = if is_last_drawn { count - 1 - order } else { order };
+            checker.draw(looks, look);
+            let pose = looks.pose(look);
+            for (parent, children) in parents.iter().zip(children.chunks_exact_mut(poses)) {
+                let Some(node) = database.node(parent.node()) else { continue };
+                for (turn, group) in children.chunks_exact_mut(POSITIONS).enumerate() {
+                    let first = turn * POSITIONS;
+                    let heading_rad = pose.heading_rad + child_of(parent, first).heading_error_rad;
+                    checker.turn(&node, heading_rad, (moved(parent.offset_m, pose.way_m), 1.5 * step_m));
+                    for (index, child) in group.iter_mut().enumerate() {
+                        let offset_m = child_of(parent, first + index).offset_m;
+                        *child = child.plus(checker.evidence(moved(offset_m, pose.way_m), &closeness));
+                    }
+                }
+            }
+        }
+        for (parent, children) in parents.iter_mut().zip(children.chunks_exact(poses)) {
+            let scored = children.iter().enumerate().map(|(index, evidence)| Hypothesis {
+                evidence: *evidence,
+                score_q20: evidence.score_q20(looks.seen_q4()),
+                ..child_of(parent, index)
+            });
+            if let Some(best) = scored.reduce(|best, other| if other.score_q20 > best.score_q20 { other } else { best })
+            {
+                *parent = best;
+            }
+        }
+        parents.sort_unstable_by(Hypothesis::rank);
+    }
+}
+
+/// What the caller lends for a search: cells, the ranked, the refined and their children.
+pub(super) type SearchMemory<'m> =
+    (&'m mut [CellEvidence], &'m mut [Hypothesis], &'m mut [Hypothesis], &'m mut [Evidence]);
+
+/// Cells scoring less than this are given up: so far behind the best, for what was seen, that no look brings them back.
+fn refutation_floor_q20(best_q20: i32, seen_q4: i32) -> i32 {
+    /// Confidence of the best over the cell.
+    const LEAD: f32 = 1.5;
+    let margin = LEAD / math::sqrt(math::max(seen_q4 as f32, 16.0) / 16_000.0);
+    best_q20.saturating_sub((margin * (1 << 20) as f32) as i32)
+}
+
+fn moved(offset_m: [f32; 2], way_m: [f32; 2]) -> [f32; 2] {
+    [offset_m[0] + way_m[0], offset_m[1] + way_m[1]]
+}

@@ -1,0 +1,37 @@
+//! A segment of a look as it is kept until the end of the attempt.
+
+use super::image_frame::ImageFrame;
+use crate::geometry::Segment2;
+use crate::math;
+use zerocopy::{FromBytes, Immutable, IntoBytes};
+
+/// End points in the normal image of 640 x 480 px, in Q4.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, FromBytes, IntoBytes, Immutable)]
+#[repr(C)]
+pub(super) struct SeenSegment {
+    pub(super) start_q4: [i16; 2],
+    pub(super) end_q4: [i16; 2],
+}
+
+impl SeenSegment {
+    pub(super) fn new(segment: &Segment2, frame: &ImageFrame) -> Self {
+        let q4 = |coordinate: f32| math::round(coordinate * frame.scale * 16.0) as i16;
+        Self {
+            start_q4: [q4(segment.start().x), q4(segment.start().y)],
+            end_q4: [q4(segment.end().x), q4(segment.end().y)],
+        }
+    }
+
+    /// Length in Q4 px.
+    pub(super) fn length_q4(&self) -> i32 {
+        let (dx, dy) = self.direction_q4();
+        math::round(math::length(dx as f32, dy as f32)) as i32
+    }
+
+    pub(super) fn direction_q4(&self) -> (i32, i32) {
+        (
+            i32::from(self.end_q4[0]) - i32::from(self.start_q4[0]),
+            i32::from(self.end_q4[1]) - i32::from(self.start_q4[1]),
+        )
+    }
+}

@@ -1,0 +1,22 @@
+//! How far the grid about a node reaches.
+
+use crate::database::{Node, TopologicalDatabase};
+use crate::math;
+
+/// Part of the way from a node to the nearest other that its grid reaches: past the corners of its Voronoi cell.
+const REACH: f32 = 0.8;
+/// Least and greatest reach \[m\].
+const REACH_LIMITS_M: [f32; 2] = [0.6, 2.0];
+
+/// Distance from a node to the nearest other \[m\]; infinite when there is none.
+fn nearest_other_m(database: &TopologicalDatabase<'_>, node: &Node<'_>) -> f32 {
+    let others = database.nodes().filter(|other| other.id() != node.id());
+    others.map(|other| other.position().distance(node.position())).fold(f32::INFINITY, math::min)
+}
+
+/// How far the grid about every node reaches along an axis \[m\], from the mean spacing of the nodes.
+pub(super) fn reach_m(database: &TopologicalDatabase<'_>) -> f32 {
+    let sum = database.nodes().fold(0.0, |sum, node| sum + nearest_other_m(database, &node));
+    let wanted = REACH * sum / database.node_count() as f32;
+    math::max(REACH_LIMITS_M[0], math::min(wanted, REACH_LIMITS_M[1]))
+}

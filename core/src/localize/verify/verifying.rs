@@ -1,0 +1,144 @@
+//! The verifying localiser: poses around every node, checked against all looks.
+
+use super::VerificationConfig;
+use super::check::Checker;
+use super::judgement::{Judgement, judge, nearest_node};
+use super::kept_looks::KeptLooks;
+use super::memory::Memory;
+use super::pose_fit::fit;
+use super::search::Search;
+use crate::database::{NodeId, TopologicalDatabase};
+use crate::geometry::{Angle, Heading, Point2};
+use crate::localize::segment_filter::SegmentFilter;
+use crate::localize::{
+    CandidateSet, Decision, Localized, LocalizerConfig, Look, ObserveError, PoseEstimate, StartError, UnknownReason,
+};
+
+/// An attempt that saw less than this in all looks was too poor to tell \[px\].
+const POOR_PX: i32 = 300;
+/// After the last look a lead of this part of the confidence asked for is enough.
+const LAST_CONFIDENCE: f32 = 0.5;
+/// Agreement below which no place of the map is what was seen.
+const OUTSIDE_SCORE: f32 = 0.25;
+/// Rivals less likely than this are not named.
+const LEAST_PROBABILITY: f32 = 0.01;
+
+/// Tells a pose, look by look.
+#[derive(Debug)]
+pub(in crate::localize) struct VerifyingLocalizer<'m> {
+    database: TopologicalDatabase<'m>,
+    config: LocalizerConfig,
+    confidence: f32,
+    checker: Checker<'m>,
+    looks: KeptLooks<'m>,
+    search: Search<'m>,
+    candidates: CandidateSet<'m>,
+    is_finished: bool,
+}
+
+impl<'m> VerifyingLocalizer<'m> {
+    /// A localiser in `database`, working in `memory`, with `config` unchecked as yet.
+    pub(in crate::localize) fn new(
+        database: TopologicalDatabase<'m>,
+        config: &LocalizerConfig,
+        verification: &VerificationConfig,
+        memory: &'m mut [u64],
+    ) -> Result<Self, StartError> {
+        let config = config.checked().map_err(StartError::Config)?;
+        let memory =
+            Memory::divide(memory, &config, verification, database.node_count()).map_err(StartError::Memory)?;
+        let search_memory = (memory.cells, memory.ranked, memory.refined, memory.children);
+        Ok(Self {
+            database,
+            config,
+            confidence: verification.confidence,
+            checker: Checker::new(database.rig(), SegmentFilter::new(&config), memory.planes, memory.view),
+            looks: KeptLooks::new(memory.poses, memory.segments),
+            search: Search::new(verification, &database, search_memory),
+            candidates: CandidateSet::new(memory.node_scores),
+            is_finished: false,
+        })
+    }
+
+    /// Takes one look into account and decides.
+    pub(in crate::localize) fn observe(&mut self, look: &Look<'_>) -> Result<Decision, ObserveError> {
+        let heading = look.heading.ok_or(ObserveError::HeadingMissing)?;
+        if self.is_finished {
+            self.reset();
+        }
+        let (filter, frame) = (*self.checker.filter(), *self.checker.frame());
+        self.looks.push((heading, look.motion_since_last), look.scene.segments(), &filter, &frame);
+        self.search.look(&self.database, &mut self.checker, &self.looks);
+        let Self { search, candidates, .. } = self;
+        candidates.replace(|node| {
+            let scores = search.hypotheses().filter(|hypothesis| hypothesis.node() == node);
+            scores.map(|hypothesis| i64::from(hypothesis.score_q20) << 10).max().unwrap_or(0)
+        });
+        let decision = self.decide();
+        self.is_finished = !matches!(decision, Decision::LookAgain { .. });
+        Ok(decision)
+    }
+
+    /// Forgets all looks.
+    pub(in crate::localize) fn reset(&mut self) {
+        self.looks.clear();
+        self.checker.forget();
+        self.search.clear();
+        self.candidates.reset();
+        self.is_finished = false;
+    }
+
+    /// The score of the best pose beside each node.
+    pub(in crate::localize) const fn candidates(&self) -> &CandidateSet<'m> {
+        &self.candidates
+    }
+
+    /// Segments of the last look that entered.
+    pub(in crate::localize) fn scene_segment_count(&self) -> usize {
+        self.looks.count().checked_sub(1).map_or(0, |last| self.looks.segments(last).len())
+    }
+
+    fn decide(&mut self) -> Decision {
+        let has_looked_enough = self.looks.is_full();
+        let is_poor = self.looks.seen_q4() < POOR_PX * 16;
+        let judgement = judge(&self.search.hypotheses(), &self.database, self.looks.seen_q4());
+        match judgement {
+            Some(judgement) if !is_poor && self.is_sure(&judgement, has_looked_enough) => {
+                Decision::Localized(self.localized(&judgement))
+            }
+            _ if !has_looked_enough => Decision::LookAgain { turn: self.config.turn },
+            Some(_) | None if is_poor => Decision::Unknown { reason: UnknownReason::SceneTooPoor },
+            Some(judgement) if !is_outside(&judgement) => {
+                let mut rivals = judgement.places;
+                rivals.retain_likelier(LEAST_PROBABILITY);
+                Decision::Unknown { reason: UnknownReason::Indistinguishable(rivals) }
+            }
+            _ => Decision::Unknown { reason: UnknownReason::OutsideMap },
+        }
+    }
+
+    fn is_sure(&self, judgement: &Judgement, is_last_look: bool) -> bool {
+        let asked = if is_last_look { self.confidence * LAST_CONFIDENCE } else { self.confidence };
+        judgement.confidence > asked && !is_outside(judgement)
+    }
+
+    /// The answer: the pose at the last look, and the node nearest to it.
+    fn localized(&mut self, judgement: &Judgement) -> Localized {
+        let best = &judgement.best;
+        let fitted = fit(best, &self.database, &mut self.checker, &self.looks);
+        let last = self.looks.pose(self.looks.count().saturating_sub(1));
+        let from = self.database.node(best.node()).map_or(Point2::default(), |node| node.position());
+        let position =
+            Point2::new(from.x + fitted.offset_m[0] + last.way_m[0], from.y + fitted.offset_m[1] + last.way_m[1]);
+        let heading = Heading::new(Angle::from_radians(last.heading_rad + fitted.heading_error_rad));
+        let pose = PoseEstimate { position, heading: heading.unwrap_or_default(), covariance: fitted.covariance };
+        let node: NodeId = nearest_node(&self.database, position);
+        let probability = judgement.places.iter().next().map(|place| place.probability);
+        Localized { node, pose: Some(pose), probability }
+    }
+}
+
+/// Whether even the best place agrees too little with what was seen.
+fn is_outside(judgement: &Judgement) -> bool {
+    judgement.best.score_q20 < (OUTSIDE_SCORE * (1 << 20) as f32) as i32
+}

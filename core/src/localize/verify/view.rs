@@ -1,0 +1,41 @@
+//! A node's model turned to a heading: the part of it that a camera near the node can see.
+
+use crate::database::Node;
+use crate::geometry::Point3;
+use crate::math;
+use zerocopy::{FromBytes, Immutable, IntoBytes};
+
+/// A model segment in the camera frame of the node: x right, y down, z forward \[m\].
+#[derive(Debug, Clone, Copy, PartialEq, Default, FromBytes, IntoBytes, Immutable)]
+#[repr(C)]
+pub(super) struct ViewSegment {
+    pub(super) start: [f32; 3],
+    pub(super) end: [f32; 3],
+}
+
+/// Turns the node's segments to the heading given by its sine and cosine and puts those into `storage` that a camera
+/// within `reach_m` of `center_m` (in the camera frame: right, forward) may see between the slopes of its left and right
+/// border; as many as there is room for. Returns their number.
+pub(super) fn turn_model(
+    node: &Node<'_>,
+    (sin, cos): (f32, f32),
+    [left, right]: [f32; 2],
+    (center_m, reach_m): ([f32; 2], f32),
+    storage: &mut [ViewSegment],
+) -> usize {
+    let mut count = 0;
+    let turned = |p: Point3| [p.x * sin - p.y * cos, -p.z, p.x * cos + p.y * sin];
+    for segment in node.segments() {
+        let (start, end) = (turned(segment.start), turned(segment.end));
+        let farthest = math::max(start[2], end[2]) - center_m[1] + reach_m;
+        let leftmost = math::min(start[0], end[0]) - center_m[0] - reach_m;
+        let rightmost = math::max(start[0], end[0]) - center_m[0] + reach_m;
+        let may_be_seen = farthest > 0.0 && leftmost < right * farthest && rightmost > -left * farthest;
+        if may_be_seen {
+            let Some(place) = storage.get_mut(count) else { break };
+            *place = ViewSegment { start, end };
+            count += 1;
+        }
+    }
+    count
+}
