@@ -21,4 +21,4 @@ pub use look::{HeadingPrior, Look, Motion};
 pub use prediction::predict_view;
 pub use rivals::{Rival, Rivals};
 pub use score_margin::ScoreMargin;
-pub use verify::{Evidence, VerificationConfig};
+pub use verify::{Evidence, PoseCheck, VerificationConfig};

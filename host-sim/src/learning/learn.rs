@@ -36,10 +36,17 @@ pub fn learn(
     seed: u64,
     map_index: u64,
 ) -> Result<Vec<u8>, WriteError> {
-    let learned = learn_nodes(robot, nodes, sources, seed, map_index);
+    let views_per_node = nodes.first().map_or(0, |node| node.views.len() as u16);
+    write_map(robot, views_per_node, &learn_nodes(robot, nodes, sources, seed, map_index))
+}
+
+/// Writes what was learned as a database.
+///
+/// # Errors
+/// When it doesn't fit the format, for instance without nodes or views.
+pub fn write_map(robot: &CalibratedRig, views_per_node: u16, learned: &[LearnedNode]) -> Result<Vec<u8>, WriteError> {
     let models: Vec<_> =
         learned.iter().map(|node| NodeModel { position: node.position, segments: &node.segments }).collect();
-    let views_per_node = nodes.first().map_or(0, |node| node.views.len() as u16);
     let mut bytes = vec![0; database::encoded_len(&models).ok_or(WriteError::TooLarge)?];
     database::write(robot.rig(), views_per_node, &models, &mut bytes)?;
     Ok(bytes)

@@ -2,12 +2,14 @@
 
 mod calibrated_rig;
 mod calibration_bench;
+mod join;
 mod learn;
 mod node_views;
 mod place_nodes;
 
 pub use calibrated_rig::CalibratedRig;
 pub use calibration_bench::{CalibrationBench, FAR_DISPARITY_PX, PRIOR, SimulatedCalibration, bench_prior};
-pub use learn::{LearnedNode, learn, learn_nodes};
+pub use join::join_collinear;
+pub use learn::{LearnedNode, learn, learn_nodes, write_map};
 pub use node_views::NodeViews;
 pub use place_nodes::{PlaceNodesError, place_nodes};

@@ -67,7 +67,14 @@ impl Site {
     /// When what was learned does not fit the database format.
     pub fn learn_map(&self, scenario: &Scenario, map_index: u32) -> Result<Vec<u8>, WriteError> {
         let robot = self.calibrated_rig(&scenario.uncertainty, scenario.seed, map_index);
-        learning::learn(&robot, &self.node_views, &scenario.uncertainty, scenario.seed, u64::from(map_index))
+        let (seed, map_index) = (scenario.seed, u64::from(map_index));
+        let mut learned = learning::learn_nodes(&robot, &self.node_views, &scenario.uncertainty, seed, map_index);
+        if scenario.learning.join {
+            for node in &mut learned {
+                node.segments = learning::join_collinear(robot.rig(), &node.segments);
+            }
+        }
+        learning::write_map(&robot, scenario.learning.views, &learned)
     }
 
     /// The rig as the robot of the `map_index`-th map knows it: the one that learned the map and is put down with it.

@@ -132,7 +132,7 @@ fn check_localizer(localizer: &LocalizerSettings) -> Result<(), IllegalValue> {
         "an odd number",
         || "the node itself lies in the middle; add one".to_owned(),
     )?;
-    within("localizer.verification.confidence", verification.confidence, 0.0..=100.0, "0.4 is the default")?;
+    within("localizer.verification.confidence", verification.confidence, 0.0..=100.0, "0.5 is the default")?;
     within("localizer.verification.refined", verification.refined, 1..=256, "30 is the default")?;
     let finalists = verification.finalists;
     within("localizer.verification.finalists", finalists, 1..=verification.refined, "at most as many as are refined")?;

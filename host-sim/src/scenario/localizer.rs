@@ -122,9 +122,7 @@ pub struct VerificationSettings {
 impl Default for VerificationSettings {
     fn default() -> Self {
         let VerificationConfig { cells_per_side, confidence, refined, finalists } = VerificationConfig::reference();
-        // By way of its shortest decimals: 0.4 and not 0.4000000059604645.
-        let confidence = confidence.to_string().parse().expect("decimals of a number");
-        Self { cells_per_side, confidence, refined, finalists }
+        Self { cells_per_side, confidence: f64::from(confidence), refined, finalists }
     }
 }
 

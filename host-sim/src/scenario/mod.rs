@@ -96,10 +96,12 @@ pub struct LearningSettings {
     pub nodes: u16,
     /// Views learned at each node, evenly around the circle; 12 in the paper.
     pub views: u16,
+    /// Whether pieces of one edge become one segment of the model again; not in the paper.
+    pub join: bool,
 }
 
 impl Default for LearningSettings {
     fn default() -> Self {
-        Self { nodes: 72, views: 12 }
+        Self { nodes: 72, views: 12, join: false }
     }
 }

@@ -12,6 +12,7 @@ mod matching;
 mod prediction;
 mod scene;
 mod segment;
+mod verification;
 
 pub use attempt::{Attempt, NaiveDecision};
 pub use candidates::NaiveCandidates;
@@ -21,3 +22,4 @@ pub use matching::{bhattacharyya_coefficient, view_score};
 pub use prediction::predict;
 pub use scene::prepare_scene;
 pub use segment::NaiveSegment;
+pub use verification::{NaiveCloseness, verification_evidence, verification_score};

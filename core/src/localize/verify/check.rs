@@ -6,6 +6,7 @@ use super::distance_planes::{COLUMNS, DistancePlanes, ROWS};
 use super::image_frame::ImageFrame;
 use super::kept_looks::KeptLooks;
 use super::responses::Responses;
+use super::seen_segment::SeenSegment;
 use super::view::{ViewSegment, turn_model};
 use crate::database::Node;
 use crate::geometry::StereoRig;
@@ -90,7 +91,7 @@ impl<'m> Checker<'m> {
         &self.filter
     }
 
-    pub(super) const fn sin_cos(&self) -> (f32, f32) {
+    pub(super) const fn heading_sin_cos(&self) -> (f32, f32) {
         self.sin_cos
     }
 
@@ -110,10 +111,16 @@ impl<'m> Checker<'m> {
     /// Draws a look, unless it is already.
     pub(super) fn draw(&mut self, looks: &KeptLooks<'_>, look: usize) {
         if self.drawn_look != Some(look) {
-            self.planes.redraw(looks.segments(look));
-            self.responses.measure_background(&self.planes);
+            self.draw_segments(looks.segments(look));
             self.drawn_look = Some(look);
         }
+    }
+
+    /// Draws segments that belong to no look.
+    pub(super) fn draw_segments(&mut self, segments: &[SeenSegment]) {
+        self.planes.redraw(segments);
+        self.responses.measure_background(&self.planes);
+        self.drawn_look = None;
     }
 
     /// Turns a node's model to a heading, for cameras within `reach_m` of `offset_m` from the node.

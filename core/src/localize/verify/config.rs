@@ -22,7 +22,7 @@ impl VerificationConfig {
     /// The values that the study of the office settled on.
     #[must_use]
     pub const fn reference() -> Self {
-        Self { cells_per_side: 9, confidence: 0.4, refined: 30, finalists: 10 }
+        Self { cells_per_side: 9, confidence: 0.5, refined: 30, finalists: 10 }
     }
 
     /// Whether every parameter is in range.

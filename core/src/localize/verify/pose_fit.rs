@@ -134,7 +134,7 @@ fn measure(checker: &Checker<'_>, model: &Projected, seen: &[SeenSegment], gate_
     }
     let direction = [dx / length, dy / length];
     let frame = checker.frame();
-    let (sin, cos) = checker.sin_cos();
+    let (sin, cos) = checker.heading_sin_cos();
     let (mut slope, mut distance, mut inverse_sum, mut count) = ([0.0_f32; 3], 0.0_f32, 0.0_f32, 0.0_f32);
     for t in [0.17_f32, 0.5, 0.83] {
         let point = [model.start_px[0] + dx * t, model.start_px[1] + dy * t];

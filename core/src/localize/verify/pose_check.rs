@@ -1,0 +1,73 @@
+//! The evidence of one look for one pose, for those who want to see behind a decision.
+
+use super::check::{Checker, Closeness, VIEW_CAPACITY};
+use super::distance_planes::DistancePlanes;
+use super::view::ViewSegment;
+use super::{Evidence, SeenSegment};
+use crate::database::Node;
+use crate::geometry::{CapacityError, Heading, Segment2, StereoRig};
+use crate::localize::LocalizerConfig;
+use crate::localize::segment_filter::SegmentFilter;
+use crate::localize::workspace::{Rest, sum, words};
+
+/// Checks poses beside nodes against one look: what the verifying localiser does, without its search.
+#[derive(Debug)]
+pub struct PoseCheck<'m> {
+    checker: Checker<'m>,
+}
+
+impl<'m> PoseCheck<'m> {
+    /// Segments of a look that can enter.
+    pub const MAX_SEGMENTS: usize = 1024;
+
+    /// Number of `u64` of working memory.
+    #[must_use]
+    pub const fn memory_len() -> usize {
+        sum(&[
+            words::<u8>(DistancePlanes::BYTES),
+            words::<ViewSegment>(VIEW_CAPACITY),
+            words::<SeenSegment>(Self::MAX_SEGMENTS),
+        ])
+    }
+
+    /// Draws the segments of a look in `memory` of at least [`Self::memory_len`] words; of more than
+    /// [`Self::MAX_SEGMENTS`] the first.
+    ///
+    /// # Errors
+    /// When the memory is too small.
+    pub fn new(
+        rig: &StereoRig,
+        config: &LocalizerConfig,
+        scene: &[Segment2],
+        memory: &'m mut [u64],
+    ) -> Result<Self, CapacityError> {
+        let too_small =
+            CapacityError { what: "pose check in 64-bit words", capacity: memory.len(), needed: Self::memory_len() };
+        let mut rest = Rest::new(memory);
+        let mut divide =
+            || Some((rest.take(DistancePlanes::BYTES)?, rest.take(VIEW_CAPACITY)?, rest.take(Self::MAX_SEGMENTS)?));
+        let (planes, view, seen): (_, _, &mut [SeenSegment]) = divide().ok_or(too_small)?;
+        let mut checker = Checker::new(rig, SegmentFilter::new(config), planes, view);
+        let (filter, frame) = (*checker.filter(), *checker.frame());
+        let mut count = 0;
+        for (place, segment) in seen.iter_mut().zip(scene.iter().filter(|segment| filter.keeps(segment))) {
+            *place = SeenSegment::new(segment, &frame);
+            count += 1;
+        }
+        checker.draw_segments(&seen[..count]);
+        Ok(Self { checker })
+    }
+
+    /// Evidence for a camera at `offset_m` from the node, axes of the world, looking along `heading`; the position may be
+    /// off by `position_m` and the heading by `heading_rad`; points are looked up every `spacing_px`.
+    #[must_use]
+    pub fn evidence(
+        &mut self,
+        node: &Node<'_>,
+        (offset_m, heading): ([f32; 2], Heading),
+        [position_m, heading_rad, spacing_px]: [f32; 3],
+    ) -> Evidence {
+        self.checker.turn(node, heading.angle().radians(), (offset_m, 0.01));
+        self.checker.evidence(offset_m, &Closeness { position_m, heading_rad, spacing_px })
+    }
+}
