@@ -26,6 +26,7 @@
 //! | [`pgh`] | pairwise geometric histograms: shape and fixed-point construction |
 //! | [`matching`] | Bhattacharyya coefficients of histograms, score of a scene against a view |
 //! | [`database`] | the topological database as a written byte format, read in place |
+//! | [`explore`] | exploring a building by wall following, from an unknown start |
 //! | [`localize`] | candidate filtering and the localiser itself |
 //!
 //! # Same bits everywhere
@@ -39,6 +40,7 @@
 extern crate std;
 
 pub mod database;
+pub mod explore;
 pub mod geometry;
 pub mod localize;
 pub mod matching;

@@ -6,7 +6,7 @@ use crate::source::root_references;
 /// A module at the root of a crate and the modules there that it may know besides itself.
 type Arrow = (&'static str, &'static [&'static str]);
 
-/// `math < geometry < pgh < matching`, `geometry < stereo`, `geometry < database`; `localize` alone knows database and matching both.
+/// `math < geometry < pgh < matching`, `geometry < stereo`, `geometry < explore`, `geometry < database`; `localize` alone knows database and matching both.
 const CORE: &[Arrow] = &[
     ("math", &[]),
     ("geometry", &["math"]),
@@ -14,6 +14,7 @@ const CORE: &[Arrow] = &[
     ("pgh", &["math", "geometry"]),
     ("matching", &["math", "geometry", "pgh"]),
     ("database", &["math", "geometry"]),
+    ("explore", &["math", "geometry"]),
     ("localize", &["math", "geometry", "pgh", "matching", "database"]),
 ];
 
