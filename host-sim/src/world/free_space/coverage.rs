@@ -70,9 +70,20 @@ impl Grid {
 
 /// Heights from `low` to `high` \[m\].
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Slab {
-    pub(super) low: f64,
-    pub(super) high: f64,
+pub(in crate::world) struct Slab {
+    pub(in crate::world) low: f64,
+    pub(in crate::world) high: f64,
+}
+
+/// The outline of what of a triangle lies in the slab, seen from above: its sides.
+pub(in crate::world) fn outline(triangle: &[[f64; 3]; 3], slab: Slab) -> impl Iterator<Item = [[f64; 2]; 2]> + use<> {
+    let mut polygon = Polygon::of(triangle);
+    polygon.cut(2, slab.low, slab.high);
+    let corner = move |index: usize| {
+        let [x, y, _] = polygon.corners[index % polygon.count];
+        [x, y]
+    };
+    (0..polygon.count).map(move |index| [corner(index), corner(index + 1)])
 }
 
 /// How many triangles touch each cell.

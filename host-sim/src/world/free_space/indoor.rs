@@ -119,7 +119,7 @@ fn is_level([a, b, c]: &[[f64; 3]; 3]) -> bool {
 }
 
 /// The triangles of which all is finite, as coordinates.
-pub(super) fn triangles(surfaces: &Surfaces) -> impl Iterator<Item = [[f64; 3]; 3]> + '_ {
+pub(in crate::world) fn triangles(surfaces: &Surfaces) -> impl Iterator<Item = [[f64; 3]; 3]> + '_ {
     let corner = |index: u32| {
         let Point3 { x, y, z } = surfaces.vertices.get(index as usize).copied()?;
         [x, y, z].iter().all(|c| c.is_finite()).then(|| [x, y, z].map(f64::from))

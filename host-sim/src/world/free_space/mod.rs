@@ -17,7 +17,10 @@ use super::{Surfaces, WireframeWorld};
 use crate::random::Stream;
 use coverage::Grid;
 use edgeloc::geometry::Point2;
-use indoor::{IndoorRule, OUTSIDE_BALL_M, indoor_regions, triangles};
+use indoor::{IndoorRule, OUTSIDE_BALL_M, indoor_regions};
+
+pub(super) use coverage::{Slab, outline};
+pub(super) use indoor::triangles;
 
 /// The most cells a grid may have, about 100 m by 100 m at 5 cm: bounds the memory that a world file can ask for.
 const MAX_CELL_COUNT: f64 = 4e6;
@@ -74,6 +77,30 @@ impl FreeSpace {
     /// When an option is out of range, the world has no surfaces or too large ones for the grid, or when nothing in it
     /// is indoors and wide enough for the robot.
     pub fn of(world: &WireframeWorld, options: &FreeSpaceOptions) -> Result<Self, FreeSpaceError> {
+        Self::choose(world, options, |_, regions| {
+            let largest = regions.iter().enumerate().max_by_key(|(index, cells)| (cells.len(), usize::MAX - index));
+            Ok(largest.map_or(0, |(index, _)| index))
+        })
+    }
+
+    /// The indoor region that holds `place`, which need not be the largest one: a closed room, say.
+    ///
+    /// # Errors
+    /// As [`Self::of`], and when the robot can't stand at `place`.
+    pub fn around(world: &WireframeWorld, options: &FreeSpaceOptions, place: Point2) -> Result<Self, FreeSpaceError> {
+        Self::choose(world, options, |grid, regions| {
+            let cell = grid.cell_at(place);
+            let holds = |cells: &Vec<usize>| cell.is_some_and(|cell| cells.contains(&cell));
+            regions.iter().position(holds).ok_or(FreeSpaceError::NotFree { x_m: place.x, y_m: place.y })
+        })
+    }
+
+    /// The region with the index that `chosen` tells.
+    fn choose(
+        world: &WireframeWorld,
+        options: &FreeSpaceOptions,
+        chosen: impl FnOnce(&Grid, &[Vec<usize>]) -> Result<usize, FreeSpaceError>,
+    ) -> Result<Self, FreeSpaceError> {
         check(options)?;
         let grid = grid_over(&world.surfaces, options)?;
         check_row_steps(&world.surfaces, &grid)?;
@@ -81,8 +108,7 @@ impl FreeSpace {
         if regions.is_empty() {
             return Err(FreeSpaceError::NoRoom { world: world.name.clone(), robot_radius_m: options.robot_radius_m });
         }
-        let largest = regions.iter().enumerate().max_by_key(|(index, cells)| (cells.len(), usize::MAX - index));
-        let mut cells = regions.swap_remove(largest.map_or(0, |(index, _)| index));
+        let mut cells = regions.swap_remove(chosen(&grid, &regions)?);
         cells.sort_unstable();
         let mut numbers = vec![NOT_FREE; grid.cell_count()];
         for (number, &cell) in (0_u32..).zip(&cells) {
@@ -96,6 +122,18 @@ impl FreeSpace {
     #[must_use]
     pub fn contains(&self, point: Point2) -> bool {
         self.grid.cell_at(point).is_some_and(|cell| self.numbers[cell] != NOT_FREE)
+    }
+
+    /// The number of the free cell at a point of the floor, as in [`Self::cell_centers`].
+    pub(crate) fn number_at(&self, point: Point2) -> Option<usize> {
+        let number = self.numbers[self.grid.cell_at(point)?];
+        (number != NOT_FREE).then_some(number as usize)
+    }
+
+    /// What the robot needs, as this was found for.
+    #[must_use]
+    pub const fn options(&self) -> &FreeSpaceOptions {
+        &self.options
     }
 
     /// Area of the free cells \[m2\].
@@ -269,6 +307,17 @@ pub enum FreeSpaceError {
         row_steps: usize,
         /// The most there may be.
         max_row_steps: usize,
+    },
+    /// The place is in no indoor region.
+    #[error(
+        "the robot can't stand at {x_m}, {y_m} m: it would touch something, or the place is not indoors; \
+         `edgeloc world view` draws free space tinted"
+    )]
+    NotFree {
+        /// East of the origin \[m\].
+        x_m: f32,
+        /// North of the origin \[m\].
+        y_m: f32,
     },
     /// Nothing is indoors and free.
     #[error(

@@ -134,3 +134,15 @@ fn countless_triangles_across_a_wide_world_are_refused_at_once() {
     assert!(said.contains("50000000") && said.contains("larger cells"), "{said}");
     assert!(begun.elapsed() < std::time::Duration::from_secs(1), "took {:?}", begun.elapsed());
 }
+
+#[test]
+fn a_closed_room_beside_a_larger_one_is_the_free_space_around_a_place_in_it() {
+    // A wall of 0.1 m parts the room at x = 1.2.
+    let world = room(0.0, |room| room.add_solid([1.2, 0.0, 0.0], [1.3, 3.0, 2.5]));
+    let around = |x, y| FreeSpace::around(&world, &FreeSpaceOptions::default(), Point2::new(x, y));
+    let (larger, smaller) = (free(&world).expect("a room"), around(0.6, 1.5).expect("a place in the smaller room"));
+    assert!(smaller.area_m2() < larger.area_m2() && !smaller.contains(Point2::new(3.0, 1.5)));
+    assert!((smaller.other_regions_m2() - larger.area_m2()).abs() < 1e-9);
+    let error = around(1.25, 1.5).expect_err("in the wall");
+    assert!(error.to_string().contains("can't stand at 1.25, 1.5 m"), "{error}");
+}
