@@ -2,14 +2,20 @@
 
 mod calibrated_rig;
 mod calibration_bench;
+mod exploration;
+mod explore;
 mod join;
 mod learn;
+mod node_placement;
 mod node_views;
 mod place_nodes;
 
 pub use calibrated_rig::CalibratedRig;
 pub use calibration_bench::{CalibrationBench, FAR_DISPARITY_PX, PRIOR, SimulatedCalibration, bench_prior};
+pub use exploration::{COVER_REACH_M, Exploration};
+pub use explore::{ExplorationError, ExploringRobot, explore};
 pub use join::join_collinear;
 pub use learn::{LearnedNode, learn, learn_nodes, write_map};
+pub use node_placement::{NodePlacement, NodePlacementError, random_start};
 pub use node_views::NodeViews;
 pub use place_nodes::{PlaceNodesError, place_nodes};

@@ -48,20 +48,20 @@ fn spread(space: &FreeSpace, cell_count: usize, count: usize, seed: u64) -> Vec<
 }
 
 /// For each free cell the nearest node and the way to it.
-struct Clusters {
+pub(super) struct Clusters {
     /// In tenths of a cell.
-    ways: Vec<usize>,
+    pub(super) ways: Vec<usize>,
     nodes: Vec<usize>,
 }
 
 impl Clusters {
-    fn new(cell_count: usize) -> Self {
+    pub(super) fn new(cell_count: usize) -> Self {
         Self { ways: vec![usize::MAX; cell_count], nodes: vec![usize::MAX; cell_count] }
     }
 
     /// Gives each of `nodes`, a number and its cell, the cells to which its way is the shortest (Dijkstra 1959, with the
     /// queue of Dial 1969: a step is at most 14 tenths, so a ring of 15 lists holds all that wait).
-    fn grow(&mut self, space: &FreeSpace, nodes: impl IntoIterator<Item = (usize, usize)>) {
+    pub(super) fn grow(&mut self, space: &FreeSpace, nodes: impl IntoIterator<Item = (usize, usize)>) {
         const RING: usize = 15;
         let mut waiting: [Vec<usize>; RING] = Default::default();
         for (node, cell) in nodes {

@@ -1,6 +1,6 @@
 //! What all trials of a run share: the building, the nodes in it and what a noise-free robot saw from them.
 
-use crate::learning::{self, CalibratedRig, CalibrationBench, NodeViews, PlaceNodesError};
+use crate::learning::{self, CalibratedRig, CalibrationBench, NodePlacementError, NodeViews};
 use crate::scenario::Scenario;
 use crate::uncertainty::Sources;
 use crate::world::{FreeSpace, FreeSpaceError, FreeSpaceOptions, Occluders, ViewpointVisibility, WireframeWorld};
@@ -56,7 +56,8 @@ impl Site {
         rig: StereoRig,
         scenario: &Scenario,
     ) -> Result<Self, SiteError> {
-        let nodes = learning::place_nodes(&free_space, usize::from(scenario.learning.nodes), scenario.seed)?;
+        let node_count = usize::from(scenario.learning.nodes);
+        let nodes = scenario.learning.placement.place(&world, &free_space, node_count, scenario.seed)?;
         let node_views = NodeViews::observe_all(&rig, &world, &occluders, &nodes, scenario.learning.views);
         Ok(Self { world, occluders, free_space, rig, nodes, calibration_bench, node_views })
     }
@@ -117,5 +118,5 @@ pub enum SiteError {
     FreeSpace(#[from] FreeSpaceError),
     /// The nodes can't be placed.
     #[error(transparent)]
-    Placement(#[from] PlaceNodesError),
+    Placement(#[from] NodePlacementError),
 }

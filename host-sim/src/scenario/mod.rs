@@ -21,6 +21,7 @@ pub use rig::RigSettings;
 pub use row::{Row, Setting, Start};
 pub use world_choice::{Building, VisibilityChoice, WorldChoice};
 
+use crate::learning::NodePlacement;
 use crate::uncertainty::Sources;
 use serde::{Deserialize, Serialize};
 
@@ -94,6 +95,8 @@ impl Scenario {
 pub struct LearningSettings {
     /// Nodes placed in the free space; 72 in the paper.
     pub nodes: u16,
+    /// Where they are placed.
+    pub placement: NodePlacement,
     /// Views learned at each node, evenly around the circle; 12 in the paper.
     pub views: u16,
     /// Whether pieces of one edge become one segment of the model again; not in the paper.
@@ -102,6 +105,6 @@ pub struct LearningSettings {
 
 impl Default for LearningSettings {
     fn default() -> Self {
-        Self { nodes: 72, views: 12, join: false }
+        Self { nodes: 72, placement: NodePlacement::Spread, views: 12, join: false }
     }
 }
