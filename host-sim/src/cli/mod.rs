@@ -10,6 +10,7 @@ mod console;
 mod demo;
 mod figures;
 mod interruption;
+mod explore;
 mod learn;
 mod locate;
 mod map;
@@ -58,6 +59,7 @@ enum Verb {
     Demo(demo::Demo),
     #[command(subcommand)]
     World(world::World),
+    Explore(explore::Explore),
     Learn(learn::Learn),
     Calibrate(calibrate::Calibrate),
     #[command(subcommand)]
@@ -81,6 +83,7 @@ pub(crate) fn main() -> ExitCode {
     let done = match arguments.verb.unwrap_or(Verb::Demo(demo::Demo::default())) {
         Verb::Demo(verb) => verb.execute(),
         Verb::World(verb) => verb.execute(),
+        Verb::Explore(verb) => verb.execute(),
         Verb::Learn(verb) => verb.execute(),
         Verb::Calibrate(verb) => verb.execute(),
         Verb::Map(verb) => verb.execute(),

@@ -22,6 +22,13 @@ pub(super) struct Wheel {
     bar: ProgressBar,
 }
 
+impl Wheel {
+    /// Says anew what is being done.
+    pub(super) fn say(&self, what: String) {
+        self.bar.set_message(what);
+    }
+}
+
 impl Drop for Wheel {
     fn drop(&mut self) {
         self.bar.finish_and_clear();

@@ -158,7 +158,7 @@ impl FloorPlan {
     }
 
     /// The free cells as one path, neighbours in a row joined.
-    fn free_path(&self, free: &FreeCells) -> String {
+    pub(super) fn free_path(&self, free: &FreeCells) -> String {
         let (origin, side_m) = (free.origin, free.side_m);
         let index = |coordinate: f32, origin: f32| (f64::from(coordinate - origin) / side_m).floor() as i64;
         let cells = free.centers.iter().map(|center| (index(center.y, origin.y), index(center.x, origin.x)));
