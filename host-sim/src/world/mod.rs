@@ -18,8 +18,8 @@ mod wireframe;
 
 pub use free_space::{FreeSpace, FreeSpaceError, FreeSpaceOptions};
 pub use occlusion::Occluders;
-pub use viewpoints::{ReferenceViewpoint, ReferenceViewpoints};
 pub use outlines::Outlines;
 pub use range_sensor::{RangeSensor, RangeSensorOptions};
+pub use viewpoints::{ReferenceViewpoint, ReferenceViewpoints};
 pub use visibility::ViewpointVisibility;
 pub use wireframe::{Surfaces, WireframeWorld};
