@@ -14,7 +14,7 @@ fn scene_against_view(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("matching");
     for workload in workloads::scenes() {
         let (scene, view) = (lines(&shape, &workload.scene), lines(&shape, &workload.view));
-        let mut memory = MatcherMemory::new(&shape, scene.len());
+        let mut memory = MatcherMemory::new(&shape, scene.len().max(view.len()));
         let mut matcher = memory.matcher();
         matcher.describe(&scene);
         let score = matcher.score(&scene, &view);

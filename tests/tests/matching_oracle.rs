@@ -10,7 +10,7 @@ use proptest::prelude::*;
 /// The view score as the localiser computes it.
 fn fast_score(shape: &PghShape, scene: &[Segment2], view: &[Segment2]) -> f64 {
     let (scene, view) = (lines(shape, scene), lines(shape, view));
-    let mut memory = MatcherMemory::new(shape, scene.len());
+    let mut memory = MatcherMemory::new(shape, scene.len().max(view.len()));
     let mut matcher = memory.matcher();
     matcher.describe(&scene);
     matcher.score(&scene, &view).as_f64()

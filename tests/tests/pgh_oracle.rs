@@ -5,7 +5,7 @@
 //! square roots, which magnify slivers: there the worst case is far from the typical one, and both are bounded.
 
 use edgeloc::geometry::{Point2, Polarity, Segment2};
-use edgeloc::pgh::{DistanceKind, HistogramBuilder, PghShape};
+use edgeloc::pgh::{DistanceKind, HistogramBuilder, LineBlock, PghShape};
 use edgeloc_tests::matcher::lines;
 use edgeloc_tests::oracle::{self, CharacterMap, Histogram, NaiveSegment, bhattacharyya_coefficient};
 use edgeloc_tests::strategies::{fixed_cases, interpolated_shape, matched_scene, segment};
@@ -23,15 +23,20 @@ const MEAN_COEFFICIENT_ERROR: f64 = 2.5e-4;
 fn fast_histograms(shape: &PghShape, segments: &[Segment2]) -> Vec<Histogram> {
     let lines = lines(shape, segments);
     let mut memory = vec![0; HistogramBuilder::memory_len(shape)];
-    let mut builder = HistogramBuilder::new(shape, &mut memory).expect("memory of the length asked for");
+    let mut blocks = vec![LineBlock::EMPTY; LineBlock::count_for(lines.len())];
+    let mut builder = HistogramBuilder::new(shape, &mut memory, &mut blocks).expect("memory of the length asked for");
+    builder.load(&lines).expect("as many lines as there is room for");
     let (distance_bins, angle_bins) = (usize::from(shape.distance_bins), usize::from(shape.angle_bins));
-    let histogram_about = |reference| {
+    let histogram_about = |reference: usize| {
         let mut masses = vec![0.0; shape.bin_count()];
-        let mut last_bin = None;
-        builder.build(&lines, reference, |bin, root| {
-            assert!(root > 0 && last_bin < Some(bin), "bins come once, in order, and only if they hold something");
-            last_bin = Some(bin);
-            masses[bin] = (f64::from(root) / 32_768.0).powi(2);
+        let mut last_index = None;
+        builder.build(&lines[reference], reference, |index, roots| {
+            assert!(roots.iter().all(|root| *root >= 0) && roots != [0; 2], "a pair holds something: {roots:?}");
+            assert!(last_index < Some(index), "pairs come once and in order");
+            last_index = Some(index);
+            for (bin, root) in (2 * usize::from(index)..).zip(roots).filter(|(_, root)| *root > 0) {
+                masses[bin] = (f64::from(root) / 32_768.0).powi(2);
+            }
         });
         Histogram { distance_bins, angle_bins, masses }
     };

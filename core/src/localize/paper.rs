@@ -9,7 +9,7 @@ use super::{
 use crate::database::{NodeId, TopologicalDatabase};
 use crate::geometry::{Heading, Segment2};
 use crate::matching::{Panel, PanelRow, RootRows, ViewScore, score_view};
-use crate::pgh::{HistogramBuilder, Line, LongestLines};
+use crate::pgh::{HistogramBuilder, Line, LineBlock, LongestLines};
 
 /// Scores nodes by pairwise geometric histograms, look by look.
 ///
@@ -48,6 +48,7 @@ impl<'m> PaperLocalizer<'m> {
                 rows: RootRows::new(memory.scene_pairs, memory.scene_row_ends),
                 view_lines: memory.view_lines,
                 masses: memory.masses,
+                line_blocks: memory.line_blocks,
                 panel_rows: memory.panel_rows,
                 best_coefficients: memory.best_coefficients,
             },
@@ -88,8 +89,8 @@ impl<'m> PaperLocalizer<'m> {
     fn describe_scene(&mut self, segments: &[Segment2]) -> Result<(), ObserveError> {
         let lines = keep_longest(segments.iter().copied(), &self.filter, &self.config, self.scene.lines);
         self.scene.line_count = lines.len();
-        let mut builder =
-            HistogramBuilder::new(&self.config.shape, self.scene.masses).map_err(ObserveError::Histograms)?;
+        let mut builder = HistogramBuilder::new(&self.config.shape, self.scene.masses, self.scene.line_blocks)
+            .map_err(ObserveError::Histograms)?;
         self.scene.rows.rebuild(&mut builder, lines).map_err(ObserveError::Capacity)
     }
 
@@ -118,6 +119,7 @@ struct SceneMatcher<'m> {
     rows: RootRows<'m>,
     view_lines: &'m mut [Line],
     masses: &'m mut [i32],
+    line_blocks: &'m mut [LineBlock],
     panel_rows: &'m mut [PanelRow],
     best_coefficients: &'m mut [i32],
 }
@@ -131,13 +133,15 @@ impl SceneMatcher<'_> {
         filter: &SegmentFilter,
         config: &LocalizerConfig,
     ) -> ViewScore {
-        let builder = HistogramBuilder::new(&config.shape, self.masses).ok();
+        let builder = HistogramBuilder::new(&config.shape, self.masses, self.line_blocks).ok();
         let Some((node, mut builder)) = database.node(id).zip(builder) else { return ViewScore::default() };
         let prediction = predict_view(&node, database.rig(), heading);
         let view_lines = keep_longest(prediction, filter, config, self.view_lines);
         let mut panel = Panel::new(self.panel_rows);
         let scene_lines = &self.lines[..self.line_count];
-        score_view(scene_lines, &self.rows, view_lines, &mut builder, &mut panel, self.best_coefficients)
+        let score = score_view(scene_lines, &self.rows, view_lines, &mut builder, &mut panel, self.best_coefficients);
+        // A view has no more lines than the scene may have, for which there is room.
+        score.unwrap_or_default()
     }
 }
 

@@ -3,7 +3,7 @@
 use super::{LocalizerConfig, NodeScore};
 use crate::geometry::CapacityError;
 use crate::matching::{BinPair, Panel, PanelRow, RootRows};
-use crate::pgh::{HistogramBuilder, Line};
+use crate::pgh::{HistogramBuilder, Line, LineBlock};
 use zerocopy::{FromBytes, IntoBytes};
 
 /// The parts that the caller's memory is divided into.
@@ -12,6 +12,7 @@ pub(super) struct Workspace<'m> {
     pub(super) scene_lines: &'m mut [Line],
     pub(super) view_lines: &'m mut [Line],
     pub(super) masses: &'m mut [i32],
+    pub(super) line_blocks: &'m mut [LineBlock],
     pub(super) scene_pairs: &'m mut [BinPair],
     pub(super) scene_row_ends: &'m mut [u32],
     pub(super) panel_rows: &'m mut [PanelRow],
@@ -23,6 +24,7 @@ pub(super) struct Workspace<'m> {
 struct Lengths {
     lines: usize,
     masses: usize,
+    line_blocks: usize,
     pairs: usize,
     panel_rows: usize,
     nodes: usize,
@@ -34,6 +36,7 @@ impl Lengths {
         Self {
             lines,
             masses: HistogramBuilder::memory_len(&config.shape),
+            line_blocks: LineBlock::count_for(lines),
             pairs: RootRows::pairs_len(lines, bins),
             panel_rows: Panel::rows_len(bins),
             nodes: node_count,
@@ -48,6 +51,7 @@ pub(super) const fn memory_len(config: &LocalizerConfig, node_count: usize) -> u
         words::<Line>(lengths.lines),
         words::<Line>(lengths.lines),
         words::<i32>(lengths.masses),
+        words::<LineBlock>(lengths.line_blocks),
         words::<BinPair>(lengths.pairs),
         words::<u32>(lengths.lines),
         words::<PanelRow>(lengths.panel_rows),
@@ -90,6 +94,7 @@ impl<'m> Workspace<'m> {
                 scene_lines: rest.take(lengths.lines)?,
                 view_lines: rest.take(lengths.lines)?,
                 masses: rest.take(lengths.masses)?,
+                line_blocks: rest.take(lengths.line_blocks)?,
                 scene_pairs: rest.take(lengths.pairs)?,
                 scene_row_ends: rest.take(lengths.lines)?,
                 panel_rows: rest.take(lengths.panel_rows)?,

@@ -57,27 +57,21 @@ impl<'m> RootRows<'m> {
     ///
     /// # Errors
     /// When there are more lines than rows, or more bin pairs than fit; nothing is kept then.
+    #[inline(always)]
     pub fn rebuild(&mut self, builder: &mut HistogramBuilder<'_>, lines: &[Line]) -> Result<(), CapacityError> {
         self.count = 0;
         if lines.len() > self.ends.len() {
             return Err(CapacityError { what: "scene rows", capacity: self.ends.len(), needed: lines.len() });
         }
+        builder.load(lines)?;
         let mut filled = 0_usize;
-        for reference in 0..lines.len() {
-            let row_start = filled;
+        for (reference, line) in lines.iter().enumerate() {
             let pairs = &mut *self.pairs;
-            builder.build(lines, reference, |bin, root| {
-                let (index, odd) = ((bin / 2) as u16, bin % 2);
-                let continues = filled > row_start && pairs.get(filled - 1).is_some_and(|pair| pair.index == index);
-                if !continues {
-                    if let Some(pair) = pairs.get_mut(filled) {
-                        *pair = BinPair { index, roots: [0; 2] };
-                    }
-                    filled += 1;
+            builder.build(line, reference, |index, roots| {
+                if let Some(pair) = pairs.get_mut(filled) {
+                    *pair = BinPair { index, roots };
                 }
-                if let Some(pair) = pairs.get_mut(filled - 1) {
-                    pair.roots[odd] = root;
-                }
+                filled += 1;
             });
             if filled > self.pairs.len() {
                 return Err(CapacityError { what: "scene bin pairs", capacity: self.pairs.len(), needed: filled });
@@ -114,14 +108,16 @@ impl<'m> Panel<'m> {
         Self { rows }
     }
 
-    /// Fills the panel with the histograms of `lines` about up to [`LANES`] of them, from the `first`-th on.
+    /// Fills the panel with the histograms about up to [`LANES`] of the `lines` that `builder` has loaded, from the
+    /// `first`-th on.
+    #[inline(always)]
     pub fn fill(&mut self, builder: &mut HistogramBuilder<'_>, lines: &[Line], first: usize) {
         self.rows.fill(PanelRow::EMPTY);
-        for (lane, reference) in (first..lines.len()).take(LANES).enumerate() {
+        for (lane, (reference, line)) in lines.iter().enumerate().skip(first).take(LANES).enumerate() {
             let rows = &mut *self.rows;
-            builder.build(lines, reference, |bin, root| {
-                if let Some(row) = rows.get_mut(bin / 2) {
-                    row.roots[lane][bin % 2] = root;
+            builder.build(line, reference, |index, roots| {
+                if let Some(row) = rows.get_mut(usize::from(index)) {
+                    row.roots[lane] = roots;
                 }
             });
         }

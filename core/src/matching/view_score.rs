@@ -1,6 +1,7 @@
 //! How well a scene matches a view: the length-weighted mean of each scene line's best coefficient.
 
 use super::{LANES, Panel, RootRows};
+use crate::geometry::CapacityError;
 use crate::pgh::{HistogramBuilder, Line};
 
 /// Similarity of a scene and a view, from 0 (nothing alike, or nothing to compare) to 1, in Q30.
@@ -22,6 +23,9 @@ impl ViewScore {
 ///
 /// The view's histograms are built panel by panel, each met by every scene row while it is hot. `best` is scratch of at
 /// least as many numbers as there are scene lines.
+///
+/// # Errors
+/// When the view has more lines than the builder has room for.
 pub fn score_view(
     scene_lines: &[Line],
     scene_rows: &RootRows<'_>,
@@ -29,7 +33,8 @@ pub fn score_view(
     builder: &mut HistogramBuilder<'_>,
     panel: &mut Panel<'_>,
     best: &mut [i32],
-) -> ViewScore {
+) -> Result<ViewScore, CapacityError> {
+    builder.load(view_lines)?;
     best.fill(0);
     for first in (0..view_lines.len()).step_by(LANES) {
         panel.fill(builder, view_lines, first);
@@ -43,5 +48,5 @@ pub fn score_view(
         weighted += u64::from(line.length_q4()) * u64::from(best.unsigned_abs());
         weight += u64::from(line.length_q4());
     }
-    ViewScore { q30: weighted.checked_div(weight).unwrap_or(0) as i32 }
+    Ok(ViewScore { q30: weighted.checked_div(weight).unwrap_or(0) as i32 })
 }

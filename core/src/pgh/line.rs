@@ -5,7 +5,7 @@ use crate::geometry::{BinaryAngle, Point2, Polarity, Segment2};
 use crate::math;
 use zerocopy::{FromBytes, Immutable, IntoBytes};
 
-/// A segment of a scene, in integers: end points in Q4 px, unit normal in Q14, direction as a binary angle.
+/// A segment of a scene, in integers: end points in Q4 px, unit normal in Q30, direction as a binary angle.
 ///
 /// With polarity the line is directed so that the brighter side lies to its left, and directions have the period
 /// 2 pi. Without, the line has no direction: it is walked so that its angle lies in `[0, pi)`, whichever end point
@@ -16,7 +16,7 @@ pub struct Line {
     pub(super) start_q4: [i32; 2],
     pub(super) end_q4: [i32; 2],
     pub(super) midpoint_q4: [i32; 2],
-    pub(super) normal_q14: [i32; 2],
+    pub(super) normal_q30: [i32; 2],
     pub(super) length_q4: u32,
     pub(super) order: u32,
     pub(super) direction: u32,
@@ -40,7 +40,10 @@ impl Line {
             start_q4: to_q4(from),
             end_q4: to_q4(to),
             midpoint_q4: to_q4(from.lerp(to, 0.5)),
-            normal_q14: [math::round(-dy / length * 16_384.0) as i32, math::round(dx / length * 16_384.0) as i32],
+            normal_q30: [
+                math::round(-dy / length * 1_073_741_824.0) as i32,
+                math::round(dx / length * 1_073_741_824.0) as i32,
+            ],
             length_q4: math::round(length * 16.0) as u32,
             order,
             direction: u32::from(BinaryAngle::from_radians(math::atan2(dy, dx), shape.period_radians()).0),
@@ -57,15 +60,6 @@ impl Line {
     #[must_use]
     pub const fn direction(&self) -> BinaryAngle {
         BinaryAngle((self.direction & 0xffff) as u16)
-    }
-
-    /// Signed perpendicular distance of `point_q4` from the infinite line, in Q18 px.
-    ///
-    /// Coordinates are within 2048 px, so the result is below 4096 sqrt(2) px and fits.
-    pub(super) fn perpendicular_distance_q18(&self, point_q4: [i32; 2]) -> i32 {
-        let (dx, dy) = (point_q4[0] - self.midpoint_q4[0], point_q4[1] - self.midpoint_q4[1]);
-        // Each product fits by itself; only the sum is bounded by Cauchy and Schwarz, so it may pass the border.
-        self.normal_q14[0].wrapping_mul(dx).wrapping_add(self.normal_q14[1].wrapping_mul(dy))
     }
 }
 

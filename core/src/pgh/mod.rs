@@ -6,21 +6,25 @@
 //! of the histogram, normalised to sum 1, as its square root in Q15. The Bhattacharyya coefficient of two histograms is
 //! then a dot product.
 //!
-//! Everything here is integer arithmetic, so that all machines agree on every bit:
+//! All machines agree on every bit: sums are of integers, in any order, and what is rounded before is integer arithmetic
+//! or single-precision additions, multiplications and divisions, which IEEE 754 rounds alike everywhere.
 //!
-//! 1. Image coordinates are rounded to 1/16 px (Q4), normals to Q14, directions to [`BinaryAngle`]s.
-//! 2. A segment's mass is spread evenly over the span of its perpendicular distances through a difference array that
-//!    is summed once; being integers, what is added and taken away cancels exactly.
-//! 3. Square roots come from a table with interpolation, within two units of the last place of Q15.
+//! 1. Image coordinates are rounded to 1/16 px (Q4), normals to Q30, directions to [`BinaryAngle`]s.
+//! 2. A segment's mass is spread evenly over the span of its perpendicular distances: its first and its last bin by
+//!    themselves, those between through a difference array that is summed once; being integers, what is added and taken
+//!    away cancels exactly.
+//! 3. Square roots come from two steps of Newton's iteration, within two thirds of a unit of the last place of Q15.
 //!
 //! [`BinaryAngle`]: crate::geometry::BinaryAngle
 
+mod block;
 mod builder;
 mod line;
 mod longest_lines;
 mod root;
 mod shape;
 
+pub use block::LineBlock;
 pub use builder::{BuilderError, HistogramBuilder};
 pub use line::Line;
 pub use longest_lines::LongestLines;
