@@ -1,6 +1,6 @@
 //! The two forms in which root histograms meet: sparse rows and dense panels.
 
-use super::kernels::{self, LANES};
+use super::kernels::{self, Body, LANES, Work};
 use crate::geometry::CapacityError;
 use crate::pgh::{HistogramBuilder, Line};
 use zerocopy::{FromBytes, Immutable, IntoBytes};
@@ -57,36 +57,53 @@ impl<'m> RootRows<'m> {
     ///
     /// # Errors
     /// When there are more lines than rows, or more bin pairs than fit; nothing is kept then.
-    #[inline(always)]
     pub fn rebuild(&mut self, builder: &mut HistogramBuilder<'_>, lines: &[Line]) -> Result<(), CapacityError> {
-        self.count = 0;
-        if lines.len() > self.ends.len() {
-            return Err(CapacityError { what: "scene rows", capacity: self.ends.len(), needed: lines.len() });
+        kernels::run(Rebuild { rows: self, builder, lines })
+    }
+
+    /// The rows in the order of the lines.
+    #[inline(always)]
+    pub fn rows(&self) -> impl Iterator<Item = &[BinPair]> {
+        let ends = &self.ends[..self.count];
+        let starts = core::iter::once(0).chain(ends.iter().copied());
+        starts.zip(ends).map(|(start, end)| &self.pairs[start as usize..*end as usize])
+    }
+}
+
+/// [`RootRows::rebuild`] as work for any machine.
+pub(super) struct Rebuild<'a, 'm, 'b> {
+    pub(super) rows: &'a mut RootRows<'m>,
+    pub(super) builder: &'a mut HistogramBuilder<'b>,
+    pub(super) lines: &'a [Line],
+}
+
+impl Work for Rebuild<'_, '_, '_> {
+    type Output = Result<(), CapacityError>;
+
+    #[inline(always)]
+    fn run<B: Body>(self, _: B) -> Self::Output {
+        let Self { rows, builder, lines } = self;
+        rows.count = 0;
+        if lines.len() > rows.ends.len() {
+            return Err(CapacityError { what: "scene rows", capacity: rows.ends.len(), needed: lines.len() });
         }
         builder.load(lines)?;
         let mut filled = 0_usize;
         for (reference, line) in lines.iter().enumerate() {
-            let pairs = &mut *self.pairs;
+            let pairs = &mut *rows.pairs;
             builder.build(line, reference, |index, roots| {
                 if let Some(pair) = pairs.get_mut(filled) {
                     *pair = BinPair { index, roots };
                 }
                 filled += 1;
             });
-            if filled > self.pairs.len() {
-                return Err(CapacityError { what: "scene bin pairs", capacity: self.pairs.len(), needed: filled });
+            if filled > rows.pairs.len() {
+                return Err(CapacityError { what: "scene bin pairs", capacity: rows.pairs.len(), needed: filled });
             }
-            self.ends[reference] = filled as u32;
+            rows.ends[reference] = filled as u32;
         }
-        self.count = lines.len();
+        rows.count = lines.len();
         Ok(())
-    }
-
-    /// The rows in the order of the lines.
-    pub fn rows(&self) -> impl Iterator<Item = &[BinPair]> {
-        let ends = &self.ends[..self.count];
-        let starts = core::iter::once(0).chain(ends.iter().copied());
-        starts.zip(ends).map(|(start, end)| &self.pairs[start as usize..*end as usize])
     }
 }
 
@@ -111,7 +128,7 @@ impl<'m> Panel<'m> {
     /// Fills the panel with the histograms about up to [`LANES`] of the `lines` that `builder` has loaded, from the
     /// `first`-th on.
     #[inline(always)]
-    pub fn fill(&mut self, builder: &mut HistogramBuilder<'_>, lines: &[Line], first: usize) {
+    pub(super) fn fill(&mut self, builder: &mut HistogramBuilder<'_>, lines: &[Line], first: usize) {
         self.rows.fill(PanelRow::EMPTY);
         for (lane, (reference, line)) in lines.iter().enumerate().skip(first).take(LANES).enumerate() {
             let rows = &mut *self.rows;
@@ -124,8 +141,8 @@ impl<'m> Panel<'m> {
     }
 
     /// The best coefficient in Q30 of `row` with a line of the panel; lanes left empty give 0.
-    #[must_use]
-    pub fn best_coefficient(&self, row: &[BinPair]) -> i32 {
-        kernels::dot_row(row, self.rows).into_iter().fold(0, i32::max)
+    #[inline(always)]
+    pub(super) fn best_coefficient(&self, body: impl Body, row: &[BinPair]) -> i32 {
+        body.best_coefficient(row, self.rows)
     }
 }

@@ -1,5 +1,6 @@
 //! How well a scene matches a view: the length-weighted mean of each scene line's best coefficient.
 
+use super::kernels::{self, Body, Work};
 use super::{LANES, Panel, RootRows};
 use crate::geometry::CapacityError;
 use crate::pgh::{HistogramBuilder, Line};
@@ -34,19 +35,39 @@ pub fn score_view(
     panel: &mut Panel<'_>,
     best: &mut [i32],
 ) -> Result<ViewScore, CapacityError> {
-    builder.load(view_lines)?;
-    best.fill(0);
-    for first in (0..view_lines.len()).step_by(LANES) {
-        panel.fill(builder, view_lines, first);
-        for (row, best) in scene_rows.rows().zip(&mut *best) {
-            *best = (*best).max(panel.best_coefficient(row));
+    kernels::run(Score { scene_lines, scene_rows, view_lines, builder, panel, best })
+}
+
+/// [`score_view`] as work for any machine.
+struct Score<'a, 'r, 'b, 'p> {
+    scene_lines: &'a [Line],
+    scene_rows: &'a RootRows<'r>,
+    view_lines: &'a [Line],
+    builder: &'a mut HistogramBuilder<'b>,
+    panel: &'a mut Panel<'p>,
+    best: &'a mut [i32],
+}
+
+impl Work for Score<'_, '_, '_, '_> {
+    type Output = Result<ViewScore, CapacityError>;
+
+    #[inline(always)]
+    fn run<B: Body>(self, body: B) -> Self::Output {
+        let Self { scene_lines, scene_rows, view_lines, builder, panel, best } = self;
+        builder.load(view_lines)?;
+        best.fill(0);
+        for first in (0..view_lines.len()).step_by(LANES) {
+            panel.fill(builder, view_lines, first);
+            for (row, best) in scene_rows.rows().zip(&mut *best) {
+                *best = (*best).max(panel.best_coefficient(body, row));
+            }
         }
+        let (mut weighted, mut weight) = (0_u64, 0_u64);
+        for (line, best) in scene_lines.iter().zip(&*best) {
+            // Lengths are below 2^17 and coefficients about 2^30: thousands of lines fit.
+            weighted += u64::from(line.length_q4()) * u64::from(best.unsigned_abs());
+            weight += u64::from(line.length_q4());
+        }
+        Ok(ViewScore { q30: weighted.checked_div(weight).unwrap_or(0) as i32 })
     }
-    let (mut weighted, mut weight) = (0_u64, 0_u64);
-    for (line, best) in scene_lines.iter().zip(&*best) {
-        // Lengths are below 2^17 and coefficients about 2^30: thousands of lines fit.
-        weighted += u64::from(line.length_q4()) * u64::from(best.unsigned_abs());
-        weight += u64::from(line.length_q4());
-    }
-    Ok(ViewScore { q30: weighted.checked_div(weight).unwrap_or(0) as i32 })
 }

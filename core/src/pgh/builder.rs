@@ -308,8 +308,9 @@ impl Scratch<'_> {
             for ((mass, end), step) in masses.iter_mut().zip(ends).zip(&*steps) {
                 *mass = end + step;
             }
-            for column in angle_bins..stride {
-                masses[(column - angle_bins) % angle_bins] += ends[column] + steps[column];
+            for wrapped in 0..WRAPPED {
+                let column = angle_bins + wrapped;
+                masses[wrapped.min(angle_bins - 1)] += ends[column] + steps[column];
             }
             total += masses.iter().sum::<i32>();
         }
@@ -327,7 +328,8 @@ impl Scratch<'_> {
         for (index, pair) in (0..).zip(self.masses.as_chunks::<2>().0) {
             let (Some(place), Some(end)) = (self.steps.get_mut(count), ends.get_mut(count)) else { break };
             (*place, *end) = (index, *pair);
-            count += usize::from(pair[0] | pair[1] != 0);
+            let both: u64 = zerocopy::transmute!(*pair);
+            count += usize::from(both != 0);
         }
         count
     }

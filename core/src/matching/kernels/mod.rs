@@ -1,38 +1,142 @@
-//! The inner loop of matching: one sparse row against one panel.
+//! The inner loop of matching, one sparse row against one panel, and which instructions the work around it may use.
 //!
-//! Several bodies, the same bits: integer sums do not depend on their order.
+//! Several bodies, the same bits: integer sums do not depend on their order, and what is not written by hand is the same
+//! portable source compiled once for each set of instructions.
 
+#[cfg(any(test, not(target_arch = "x86_64")))]
 mod portable;
-#[cfg(all(target_arch = "x86_64", target_feature = "sse2"))]
-mod sse2;
+#[cfg(target_arch = "x86_64")]
+mod x86_64;
 
-#[cfg(not(all(target_arch = "x86_64", target_feature = "sse2")))]
-pub(super) use portable::dot_row;
-#[cfg(all(target_arch = "x86_64", target_feature = "sse2"))]
-pub(super) use sse2::dot_row;
+use super::{BinPair, PanelRow};
 
 /// View lines in a panel: one vector of coefficients.
 pub const LANES: usize = 16;
 
-#[cfg(all(test, target_arch = "x86_64", target_feature = "sse2"))]
+/// A way to compute coefficients.
+pub(super) trait Body: Copy {
+    /// The best coefficient in Q30 of one scene row with a panel's lines; 0 if none is positive.
+    fn best_coefficient(self, row: &[BinPair], panel: &[PanelRow]) -> i32;
+}
+
+/// Work that is compiled once for each body. Everything it calls has to be `inline(always)` to profit.
+pub(super) trait Work {
+    /// What comes of it.
+    type Output;
+
+    /// Does it, with coefficients from `body`.
+    fn run<B: Body>(self, body: B) -> Self::Output;
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+pub(super) fn run<W: Work>(work: W) -> W::Output {
+    work.run(portable::Portable)
+}
+#[cfg(target_arch = "x86_64")]
+pub(super) use x86_64::run;
+
+#[cfg(all(test, target_arch = "x86_64"))]
 mod tests {
     use super::*;
-    use crate::matching::{BinPair, PanelRow};
+    use crate::geometry::{Point2, Polarity, Segment2};
+    use crate::matching::RootRows;
+    use crate::matching::bhattacharyya::Rebuild;
+    use crate::pgh::{DistanceKind, HistogramBuilder, Line, LineBlock, PghShape};
     use proptest::prelude::*;
+    use std::vec;
+    use std::vec::Vec;
+
+    /// The best coefficient of each row with each lane of a panel by itself.
+    struct Coefficients<'a>(&'a [Vec<BinPair>], &'a [PanelRow]);
+
+    impl Work for Coefficients<'_> {
+        type Output = Vec<i32>;
+
+        fn run<B: Body>(self, body: B) -> Vec<i32> {
+            let alone = |lane: usize| -> Vec<PanelRow> {
+                let keep = |row: &PanelRow| {
+                    let mut roots = [[0; 2]; LANES];
+                    roots[lane] = row.roots[lane];
+                    PanelRow { roots }
+                };
+                self.1.iter().map(keep).collect()
+            };
+            let panels: Vec<Vec<PanelRow>> = (0..LANES).map(alone).chain([self.1.to_vec()]).collect();
+            self.0.iter().flat_map(|row| panels.iter().map(move |panel| body.best_coefficient(row, panel))).collect()
+        }
+    }
+
+    /// All rows of a scene.
+    struct Rows<'a>(&'a PghShape, &'a [Line]);
+
+    impl Work for Rows<'_> {
+        type Output = Vec<Vec<BinPair>>;
+
+        #[inline(always)]
+        fn run<B: Body>(self, body: B) -> Self::Output {
+            let Self(shape, lines) = self;
+            let mut memory = vec![0; HistogramBuilder::memory_len(shape)];
+            let mut blocks = vec![LineBlock::EMPTY; LineBlock::count_for(lines.len())];
+            let mut builder = HistogramBuilder::new(shape, &mut memory, &mut blocks).expect("enough memory");
+            let empty = BinPair { index: 0, roots: [0; 2] };
+            let mut pairs = vec![empty; RootRows::pairs_len(lines.len(), shape.bin_count())];
+            let mut ends = vec![0; lines.len()];
+            let mut rows = RootRows::new(&mut pairs, &mut ends);
+            Rebuild { rows: &mut rows, builder: &mut builder, lines }.run(body).expect("enough memory");
+            rows.rows().map(<[BinPair]>::to_vec).collect()
+        }
+    }
+
+    /// Roots are Q15 magnitudes, at times full ones or none.
+    fn roots() -> impl Strategy<Value = [i16; 2]> {
+        let root = || prop_oneof![4 => 0..=i16::MAX, 1 => Just(0), 1 => Just(i16::MAX)];
+        (root(), root()).prop_map(|(even, odd)| [even, odd])
+    }
+
+    fn segment() -> impl Strategy<Value = Segment2> {
+        let point = || (-2048.0..2048.0_f32, 0.0..480.0_f32).prop_map(|(x, y)| Point2::new(x, y));
+        let near = || (300.0..340.0_f32, 0.0..480.0_f32).prop_map(|(x, y)| Point2::new(x, y));
+        prop_oneof![(point(), point()), (near(), near())]
+            .prop_filter_map("long enough", |(start, end)| Segment2::new(start, end, Polarity::LeftBrighter).ok())
+    }
 
     proptest! {
+        // Rows below, at and above the pairs that are under way at a time; indices past the panel count for nothing.
         #[test]
-        fn all_bodies_give_the_same_bits(
-            row in prop::collection::vec((0_u16..40, any::<[u16; 2]>()), 0..60),
-            panel in prop::collection::vec(prop::array::uniform16(any::<[u16; 2]>()), 32),
+        fn all_bodies_give_the_same_coefficients(
+            rows in prop::collection::vec(prop::collection::vec((0_u16..40, roots()), 0..20), 1..4),
+            panel in prop::collection::vec(prop::array::uniform16(roots()), 32),
         ) {
-            // Roots are Q15 magnitudes; full ones everywhere also make the sums pass the border of i32.
-            let root = |bits: [u16; 2]| bits.map(|bits| (bits >> 1) as i16);
-            let row: std::vec::Vec<BinPair> =
-                row.into_iter().map(|(index, roots)| BinPair { index, roots: root(roots) }).collect();
-            let panel: std::vec::Vec<PanelRow> =
-                panel.into_iter().map(|roots| PanelRow { roots: roots.map(root) }).collect();
-            prop_assert_eq!(portable::dot_row(&row, &panel), sse2::dot_row(&row, &panel));
+            let pair = |(index, roots)| BinPair { index, roots };
+            let rows: Vec<Vec<BinPair>> = rows.into_iter().map(|row| row.into_iter().map(pair).collect()).collect();
+            let panel: Vec<PanelRow> = panel.into_iter().map(|roots| PanelRow { roots }).collect();
+            let expected = Coefficients(&rows, &panel).run(portable::Portable);
+            for (name, found) in x86_64::run_all(|| Coefficients(&rows, &panel)) {
+                prop_assert_eq!(&found, &expected, "{}", name);
+            }
+        }
+
+        #[test]
+        fn all_bodies_give_the_same_histograms(
+            bins in (2_u16..40, 1_u16..40),
+            max_distance_px in 50.0..800.0_f32,
+            (is_signed, uses_polarity, interpolates_angle) in any::<(bool, bool, bool)>(),
+            segments in prop::collection::vec(segment(), 0..40),
+        ) {
+            let distance = if is_signed { DistanceKind::Signed } else { DistanceKind::Unsigned };
+            let shape = PghShape {
+                distance_bins: bins.0,
+                angle_bins: bins.1,
+                max_distance_px: max_distance_px.max(f32::from(bins.0)),
+                distance,
+                uses_polarity,
+                interpolates_angle,
+            };
+            let lines: Vec<Line> = segments.iter().map(|segment| Line::new(segment, 0, &shape)).collect();
+            let expected = Rows(&shape, &lines).run(portable::Portable);
+            for (name, found) in x86_64::run_all(|| Rows(&shape, &lines)) {
+                prop_assert_eq!(&found, &expected, "{}", name);
+            }
         }
     }
 }
