@@ -4,7 +4,10 @@ use super::Line;
 use zerocopy::{FromBytes, Immutable, IntoBytes};
 
 /// Lines in a block: one vector of the widest machine. Where there are no vectors, one line at a time stays in registers.
-pub(super) const BLOCK: usize = if cfg!(target_pointer_width = "64") { 16 } else { 1 };
+pub(super) const BLOCK: usize = if cfg!(target_pointer_width = "64") { WIDEST } else { 1 };
+
+/// Memory is for whole blocks of this many on every machine, so that all ask for the same.
+const WIDEST: usize = 16;
 
 /// Some lines of a scene, field by field; places left empty hold lines of length 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, FromBytes, IntoBytes, Immutable)]
@@ -29,10 +32,10 @@ impl LineBlock {
         direction: [0; BLOCK],
     };
 
-    /// Number of blocks that hold `lines` lines.
+    /// Number of blocks to keep for up to `lines` lines.
     #[must_use]
     pub const fn count_for(lines: usize) -> usize {
-        lines.div_ceil(BLOCK)
+        lines.div_ceil(WIDEST) * (WIDEST / BLOCK)
     }
 
     /// Up to [`BLOCK`] lines.

@@ -124,7 +124,7 @@ impl<'m> HistogramBuilder<'m> {
         self.scratch.steps.fill(0);
         let Some(own_length) = self.swap_length(index, 0) else { return };
         let frame = Frame::about(reference, self);
-        let blocks = LineBlock::count_for(self.line_count);
+        let blocks = self.line_count.div_ceil(BLOCK);
         for block in &self.blocks[..blocks] {
             self.scratch.add(&frame, block);
             if self.distance == DistanceKind::Unsigned {
@@ -149,7 +149,7 @@ impl<'m> HistogramBuilder<'m> {
 
     /// Replaces the length of a line and returns what it was; `None` where there is no line.
     fn swap_length(&mut self, index: usize, length_q4: i32) -> Option<i32> {
-        let block = self.blocks[..LineBlock::count_for(self.line_count)].get_mut(index / BLOCK)?;
+        let block = self.blocks[..self.line_count.div_ceil(BLOCK)].get_mut(index / BLOCK)?;
         Some(core::mem::replace(&mut block.length_q4[index % BLOCK], length_q4))
     }
 }
