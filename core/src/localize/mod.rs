@@ -18,6 +18,7 @@ pub use config::{ConfigError, LocalizerConfig};
 pub use decision::{Decision, Localized, PoseEstimate, UnknownReason};
 pub use localizer::{Localizer, ObserveError, StartError};
 pub use look::{HeadingPrior, Look, Motion};
+pub use paper::lines_to_match;
 pub use prediction::predict_view;
 pub use rivals::{Rival, Rivals};
 pub use score_margin::ScoreMargin;

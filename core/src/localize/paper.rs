@@ -145,6 +145,16 @@ impl SceneMatcher<'_> {
     }
 }
 
+/// The lines that the paper's localiser matches, of a scene and of a prediction alike: the longest of `segments` that are
+/// long enough and not near-horizontal, as many as `storage` holds. A line's order is the place of its segment.
+pub fn lines_to_match<'s>(
+    segments: impl Iterator<Item = Segment2>,
+    config: &LocalizerConfig,
+    storage: &'s mut [Line],
+) -> &'s [Line] {
+    keep_longest(segments, &SegmentFilter::new(config), config, storage)
+}
+
 fn keep_longest<'s>(
     segments: impl Iterator<Item = Segment2>,
     filter: &SegmentFilter,

@@ -56,6 +56,12 @@ impl Line {
         self.length_q4
     }
 
+    /// What tells lines of equal length apart: the number given to [`Self::new`].
+    #[must_use]
+    pub const fn order(&self) -> u32 {
+        self.order
+    }
+
     /// Direction as a fraction of the shape's period.
     #[must_use]
     pub const fn direction(&self) -> BinaryAngle {
