@@ -59,7 +59,8 @@ impl<'s> Looks<'s> {
         camera::left_segments(&observation)
     }
 
-    fn clean(&mut self, heading: Heading) -> &StereoObservation {
+    /// Both images without noise, with the optical axis along `heading`.
+    pub(super) fn clean(&mut self, heading: Heading) -> &StereoObservation {
         let known = self.clean.iter().position(|(known, _)| *known == heading);
         let index = known.unwrap_or_else(|| {
             let observation = camera::observe(&self.site.rig, &mut self.visibility, heading);
@@ -69,7 +70,8 @@ impl<'s> Looks<'s> {
         &self.clean[index].1
     }
 
-    fn noise_key(&self, look: usize) -> NoiseKey {
+    /// Which draw of the noise the `look`-th look, from 0, has.
+    pub(super) fn noise_key(&self, look: usize) -> NoiseKey {
         NoiseKey::look(self.seed, u64::from(self.trial), look as u32)
     }
 }

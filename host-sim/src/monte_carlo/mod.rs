@@ -1,5 +1,6 @@
 //! Kidnapped-robot trials: a robot is put down somewhere, looks around and says where it is.
 
+mod look_images;
 mod looks;
 mod record;
 mod runner;
@@ -10,6 +11,7 @@ mod start;
 mod statistics;
 mod trial;
 
+pub use look_images::{LookImages, SourceEffect, look_images};
 pub use record::{Outcome, TrialRecord};
 pub use runner::{Part, RunError, RunOutcome, TimedTrial, replay, run, run_part};
 pub use shard::{Shard, ShardError, count_trials};

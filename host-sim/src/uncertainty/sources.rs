@@ -83,9 +83,20 @@ list_of_sources! {
 impl Sources {
     /// Perturbs an observation by every enabled source in turn, each with its own draws.
     pub fn apply(&self, observation: &mut StereoObservation, key: &NoiseKey) {
+        self.apply_watched(observation, key, |_, _| {});
+    }
+
+    /// Like [`Self::apply`], and tells `watch` after each source that acted what it left.
+    pub fn apply_watched(
+        &self,
+        observation: &mut StereoObservation,
+        key: &NoiseKey,
+        mut watch: impl FnMut(&dyn UncertaintySource, &StereoObservation),
+    ) {
         for source in self.pipeline() {
             if source.is_enabled() && key.is_of(source.facts().acts_in) {
                 source.apply(observation, &mut key.stream(source.facts()));
+                watch(source, observation);
             }
         }
     }
