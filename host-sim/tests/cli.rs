@@ -249,6 +249,26 @@ fn a_run_repeats_byte_for_byte_and_each_trial_replays() {
     let words = done(path, &replay);
     assert!(words.contains("look  1") && words.contains("answer after"), "{words}");
     assert!(failed(path, &["replay", "runs/latest", "--trial", "3"], 1).contains("from 0 to 2"));
+    let page = || std::fs::read_to_string(path.join("drawings/trial.html")).expect("a page");
+    let first_page = page();
+    for part in [
+        "Parameters as they were applied",
+        "localizer.score_margin",
+        "What the sources drew",
+        "edge_detection_loss",
+        "Both images",
+        "class=\"clean\"",
+        "class=\"predicted\"",
+        "coefficient 0.",
+        "Accumulated score of each node",
+        "Look 1: ",
+    ] {
+        assert!(first_page.contains(part), "the page of a trial lacks {part}");
+    }
+    let addresses = first_page.matches("http").count();
+    assert_eq!(addresses, first_page.matches("http://www.w3.org/2000/svg").count(), "a page refers to nothing outside");
+    done(path, &replay);
+    assert_eq!(page(), first_page);
 
     let report = done(path, &["report", "runs/latest"]);
     assert!(report.contains("near, polarity") && report.contains("report written"), "{report}");

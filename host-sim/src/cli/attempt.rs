@@ -2,8 +2,9 @@
 
 use super::console::{self, Format};
 use super::worlds;
-use edgeloc_sim::monte_carlo::{self, Site, TrialRecord, TruePose};
-use edgeloc_sim::report::{FloorPlan, LookExplanation, to_svg_file};
+use edgeloc::database::TopologicalDatabase;
+use edgeloc_sim::monte_carlo::{self, Site, SourceEffect, TrialRecord, TruePose, look_images};
+use edgeloc_sim::report::{FloorPlan, LookExplanation, TrialFacts, to_svg_file, trial_page};
 use edgeloc_sim::scenario::Setting;
 use miette::{IntoDiagnostic, Result, WrapErr};
 use serde::Serialize;
@@ -17,7 +18,9 @@ true_heading_deg, nearest_node, second_nearest_node, nearest_node_distance_m, ou
 from the true position to it, is_success, looks, scene_segments, scored_nodes, leader_score, runner_up_score, truth_score, map_bytes, \
 map_segments, message of an error); parameters, by their keys in a scenario, as they were applied; looks (look, heading_deg, compass_deg told \
 to the localiser, seen_segments, used_segments, decision in words, and nodes, of each its score, \
-was_candidate and is_candidate: before and after the look); drawings, the files";
+was_candidate and is_candidate: before and after the look); effects, of each look what each uncertainty source did to both \
+images (source, magnitude, unit, features, changed_features, pieces and length_px before and after, rms_shift_px, \
+greatest_shift_px, flipped_pieces, unmatched_features); page, with every intermediate as a picture; drawings, the files";
 
 /// One attempt, as `--format json` prints it.
 #[derive(Debug, Serialize)]
@@ -28,6 +31,10 @@ pub(super) struct Attempt {
     parameters: BTreeMap<String, String>,
     /// What happened, look by look.
     looks: Vec<LookExplanation>,
+    /// What the uncertainty sources did to the images of each look.
+    effects: Vec<Vec<SourceEffect>>,
+    /// The page with every intermediate.
+    page: PathBuf,
     /// Drawings of the looks.
     drawings: Vec<PathBuf>,
 }
@@ -58,7 +65,24 @@ impl Attempt {
             drawings.push(path);
         }
         let parameters = setting.parameters().into_iter().collect();
-        Ok(Self { record, parameters, looks, drawings })
+        let headings: Vec<_> = looks.iter().map(|look| look.heading).collect();
+        let images = look_images(site, setting, trial, start, &headings);
+        let map = site.learn_map(&setting.scenario, record.map).into_diagnostic()?;
+        let map = TopologicalDatabase::open(&map).into_diagnostic()?;
+        let config = setting.localizer_config();
+        let facts = TrialFacts {
+            record: &record,
+            parameters: &parameters,
+            config,
+            map,
+            plan: &plan,
+            looks: &looks,
+            images: &images,
+        };
+        let page = folder.join("trial.html");
+        console::write_file(&page, trial_page(&facts).as_bytes())?;
+        let effects = images.into_iter().map(|images| images.effects).collect();
+        Ok(Self { record, parameters, looks, effects, page, drawings })
     }
 
     /// Prints the attempt.
@@ -86,6 +110,7 @@ impl Attempt {
         let verdict = if record.is_success { "right" } else { "wrong" };
         let looks = if record.looks == 1 { "look" } else { "looks" };
         console::print(&format!("answer after {} {looks}: {answer}: {verdict}", record.looks))?;
+        console::print(&format!("every intermediate: {}", self.page.display()))?;
         match (self.drawings.first(), self.drawings.last()) {
             (Some(first), Some(last)) if first != last => {
                 console::print(&format!("drawings: {} to {}", first.display(), last.display()))

@@ -5,7 +5,7 @@
 use super::FloorPlan;
 use super::drawing::{drawing, line, text, tidy, tooltip};
 use crate::monte_carlo::{LookEvent, TrialRecord};
-use edgeloc::geometry::{PinholeCamera, Point2, Polarity, Segment2};
+use edgeloc::geometry::{Heading, PinholeCamera, Point2, Polarity, Segment2};
 use edgeloc::localize::Decision;
 use serde::Serialize;
 use std::fmt::Write;
@@ -41,6 +41,12 @@ pub struct LookExplanation {
     /// The segments seen.
     #[serde(skip)]
     pub scene: Vec<Segment2>,
+    /// True heading of the optical axis.
+    #[serde(skip)]
+    pub heading: Heading,
+    /// What the compass told of it.
+    #[serde(skip)]
+    pub compass: Heading,
 }
 
 /// How a node stands after a look.
@@ -79,6 +85,8 @@ impl LookExplanation {
             nodes: scores.iter().zip(event.was_candidate).map(standing).collect(),
             decision,
             scene: event.scene.to_vec(),
+            heading: event.heading,
+            compass: event.compass.mean,
         }
     }
 
@@ -241,7 +249,7 @@ fn placed(drawing: SVG, (x, y): (f64, f64), (width, height): (f64, f64)) -> SVG 
     drawing.set("x", tidy(x)).set("y", tidy(y)).set("width", tidy(width)).set("height", tidy(height))
 }
 
-fn is_right(record: &TrialRecord, node: usize) -> bool {
+pub(super) fn is_right(record: &TrialRecord, node: usize) -> bool {
     [record.nearest_node as usize, record.second_nearest_node as usize].contains(&node)
 }
 
@@ -266,6 +274,8 @@ mod tests {
             ],
             decision: "look again after a turn of 30 degrees".to_owned(),
             scene: vec![],
+            heading: Heading::default(),
+            compass: Heading::default(),
         }
     }
 

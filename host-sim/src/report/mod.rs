@@ -24,6 +24,7 @@ mod search_lines;
 mod search_page;
 mod summary;
 mod timings;
+mod trial_page;
 mod trials_csv;
 mod trials_plan;
 
@@ -49,4 +50,5 @@ pub use search_lines::{SearchLine, search_csv, search_lines};
 pub use search_page::{SearchFacts, search_page};
 pub use summary::{MapFacts, PAPER_INTERVAL, PAPER_RATE, RowSummary, Summary, worst_trials};
 pub use timings::{RowTimings, RunTimings};
+pub use trial_page::{TrialFacts, trial_page};
 pub use trials_plan::{trial_marks, trials_plan};
