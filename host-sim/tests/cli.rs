@@ -277,6 +277,27 @@ fn a_run_repeats_byte_for_byte_and_each_trial_replays() {
 }
 
 #[test]
+fn a_rig_is_calibrated_from_its_own_corners_and_from_a_file_of_corners() {
+    let folder = folder();
+    let path = folder.path();
+    let simulated = json(&done(path, &["calibrate", "smoke", "--format", "json"]));
+    assert_documented(path, &["calibrate"], &simulated);
+    for parameter in simulated["parameters"].as_array().expect("a list") {
+        let field = |name: &str| parameter[name].as_f64().expect("a number");
+        let errors = (field("estimate") - field("truth")).abs() / field("standard_error");
+        assert!(errors < 5.0, "{parameter}");
+    }
+
+    let header = "left_x_px,left_y_px,right_x_px,right_y_px\n";
+    std::fs::write(path.join("pairs.csv"), format!("{header}100,100,80,100\n300,200,290,200.1\n")).expect("a file");
+    let words = done(path, &["calibrate", "smoke", "--corners", "pairs.csv"]);
+    assert!(words.contains("2 corner pairs used") && words.contains("translation along x"), "{words}");
+    std::fs::write(path.join("other.csv"), "a,b\n1,2\n").expect("a file");
+    let error = failed(path, &["calibrate", "smoke", "--corners", "other.csv"], 1);
+    assert!(error.contains("other.csv") && error.contains("left_x_px"), "{error}");
+}
+
+#[test]
 fn the_power_of_a_comparison_is_told_before_a_run() {
     let folder = folder();
     let path = folder.path();
