@@ -18,7 +18,7 @@ pub(crate) fn order(corners: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
 /// Every corner that continues the lattice of the seed and its two neighbours.
 fn grown(seed: [f64; 2], corners: &[[f64; 2]]) -> Option<Lattice> {
     let mut steps: Vec<[f64; 2]> =
-        corners.iter().filter(|corner| **corner != seed).map(|corner| minus(*corner, seed)).collect();
+        corners.iter().map(|corner| minus(*corner, seed)).filter(|step| length(*step) > 0.0).collect();
     steps.sort_by(|a, b| length(*a).total_cmp(&length(*b)));
     let first = *steps.first()?;
     let is_across = |step: &&[f64; 2]| cross(first, **step).abs() > 0.6 * length(first) * length(**step);
@@ -36,7 +36,7 @@ fn grown(seed: [f64; 2], corners: &[[f64; 2]]) -> Option<Lattice> {
             let expected = [here[0] + step[0], here[1] + step[1]];
             let nearest =
                 corners.iter().min_by(|a, b| length(minus(**a, expected)).total_cmp(&length(minus(**b, expected))))?;
-            let is_new = lattice.values().all(|known| known != nearest);
+            let is_new = lattice.values().all(|known| length(minus(*known, *nearest)) > 0.0);
             if is_new && length(minus(*nearest, expected)) < TOLERANCE * length(step) {
                 lattice.insert((i + di, j + dj), *nearest);
                 open.insert(0, (i + di, j + dj));
