@@ -15,7 +15,8 @@ use std::path::{Path, PathBuf};
 pub(super) const JSON_FIELDS: &str = "\
 record = the trial's line of trials.csv (row, trial, map = draw of the map's noise, true_x_m, true_y_m, \
 true_heading_deg, nearest_node, second_nearest_node, nearest_node_distance_m, outcome, answered_node, answer_distance_m \
-from the true position to it, is_success, looks, scene_segments, scored_nodes, leader_score, runner_up_score, truth_score, map_bytes, \
+from the true position to it, pose_error_m, heading_error_deg and probability of an answered pose, is_success, looks, \
+scene_segments, scored_nodes, leader_score, runner_up_score, truth_score, map_bytes, \
 map_segments, message of an error); parameters, by their keys in a scenario, as they were applied; looks (look, heading_deg, compass_deg told \
 to the localiser, seen_segments, used_segments, decision in words, and nodes, of each its score, \
 was_candidate and is_candidate: before and after the look); effects, of each look what each uncertainty source did to both \

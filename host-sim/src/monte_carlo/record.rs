@@ -41,6 +41,13 @@ pub struct TrialRecord {
     pub answered_node: Option<u32>,
     /// Distance from the true position to the answered node \[m\], if any.
     pub answer_distance_m: Option<f32>,
+    /// Distance from the true position to the position answered \[m\], if any.
+    pub pose_error_m: Option<f32>,
+    /// How far the heading answered is off the true one at the last look \[degrees\], positive when turned too far to the
+    /// left, if any.
+    pub heading_error_deg: Option<f32>,
+    /// Probability that the answer is right as the localiser has it, if it states one.
+    pub probability: Option<f32>,
     /// Whether the answered node is one of the two nearest (the paper's definition).
     pub is_success: bool,
     /// Looks taken.

@@ -4,7 +4,7 @@ use super::looks::Looks;
 use super::{Outcome, Site, TrialRecord, TruePose};
 use crate::scenario::Setting;
 use edgeloc::database::{NodeId, TopologicalDatabase};
-use edgeloc::geometry::{Heading, Scene, Segment2};
+use edgeloc::geometry::{Angle, Heading, Scene, Segment2};
 use edgeloc::localize::{Decision, HeadingPrior, Localizer, Look, Motion, ObserveError, StartError};
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -111,7 +111,7 @@ impl<'s> Trial<'s> {
                     motion = Some(Motion::exact_turn(turn));
                 }
                 last => {
-                    self.record_end(record, &last, &localizer, &was_candidate);
+                    self.record_end(record, heading, &last, &localizer, &was_candidate);
                     return Ok(());
                 }
             }
@@ -134,6 +134,9 @@ impl<'s> Trial<'s> {
             outcome: Outcome::Error,
             answered_node: None,
             answer_distance_m: None,
+            pose_error_m: None,
+            heading_error_deg: None,
+            probability: None,
             is_success: false,
             looks: 0,
             scene_segments: 0,
@@ -150,6 +153,7 @@ impl<'s> Trial<'s> {
     fn record_end(
         &self,
         record: &mut TrialRecord,
+        heading: Heading,
         decision: &Result<Decision, ObserveError>,
         localizer: &Localizer<'_>,
         was_candidate: &[bool],
@@ -160,6 +164,12 @@ impl<'s> Trial<'s> {
                 record.answered_node = Some(localized.node.0);
                 let answered = self.site.nodes.get(localized.node.0 as usize);
                 record.answer_distance_m = answered.map(|node| node.distance(self.start.position));
+                record.pose_error_m = localized.pose.map(|pose| pose.position.distance(self.start.position));
+                record.heading_error_deg = localized.pose.map(|pose| {
+                    let error_rad = pose.heading.angle().radians() - heading.angle().radians();
+                    Angle::from_radians(error_rad).wrapped().degrees()
+                });
+                record.probability = localized.probability;
             }
             Ok(_) => record.outcome = Outcome::Unknown,
             Err(error) => {
