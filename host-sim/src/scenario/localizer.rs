@@ -111,7 +111,9 @@ impl Default for PghSettings {
 pub struct VerificationSettings {
     /// Positions tried along either side of the square about each node; odd.
     pub cells_per_side: u16,
-    /// Lead of the best over its best rival, times the root of the length seen in 1000 px, that is answered.
+    /// Headings tried in every cell where the compass errs; odd.
+    pub headings: u16,
+    /// Lead of the best over its best rival, times the root of the segments seen in thirties, that is answered.
     pub confidence: f64,
     /// Hypotheses posed more closely after each look.
     pub refined: u16,
@@ -121,15 +123,21 @@ pub struct VerificationSettings {
 
 impl Default for VerificationSettings {
     fn default() -> Self {
-        let VerificationConfig { cells_per_side, confidence, refined, finalists } = VerificationConfig::reference();
-        Self { cells_per_side, confidence: f64::from(confidence), refined, finalists }
+        let VerificationConfig { cells_per_side, headings, confidence, refined, finalists } =
+            VerificationConfig::reference();
+        Self { cells_per_side, headings, confidence: decimal(confidence), refined, finalists }
     }
+}
+
+/// The number that its shortest decimals stand for: 0.45, where widening the `f32` gives 0.449999988...
+fn decimal(value: f32) -> f64 {
+    value.to_string().parse().expect("a number's own decimals")
 }
 
 impl VerificationSettings {
     fn config(&self) -> VerificationConfig {
-        let Self { cells_per_side, confidence, refined, finalists } = *self;
-        VerificationConfig { cells_per_side, confidence: confidence as f32, refined, finalists }
+        let Self { cells_per_side, headings, confidence, refined, finalists } = *self;
+        VerificationConfig { cells_per_side, headings, confidence: confidence as f32, refined, finalists }
     }
 }
 

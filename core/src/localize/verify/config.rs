@@ -6,8 +6,11 @@ pub struct VerificationConfig {
     /// Positions tried along either side of the square about each node, odd, 3 to 31. How far apart they lie follows
     /// from the spacing of the nodes, so that the squares reach the neighbours.
     pub cells_per_side: u16,
+    /// Headings tried in every cell of the grid where the compass errs, odd, 1 to 9; an exact compass takes one. One
+    /// will do up to 2 degrees, three are for 5.
+    pub headings: u16,
     /// Confidence above which the best hypothesis is answered, 0 to 100: what it is ahead of the best rival a metre or
-    /// more away, times the square root of the length seen in 1000 px.
+    /// more away, times the square root of the segments seen in thirties.
     pub confidence: f32,
     /// Hypotheses that are posed more closely after each look, 1 to 256.
     pub refined: u16,
@@ -22,7 +25,7 @@ impl VerificationConfig {
     /// The values that the study of the office settled on.
     #[must_use]
     pub const fn reference() -> Self {
-        Self { cells_per_side: 9, confidence: 0.5, refined: 30, finalists: 10 }
+        Self { cells_per_side: 11, headings: 1, confidence: 0.45, refined: 60, finalists: 10 }
     }
 
     /// Whether every parameter is in range.
@@ -30,9 +33,16 @@ impl VerificationConfig {
         let is_odd = self.cells_per_side % 2 == 1;
         is_odd
             && (3..=31).contains(&self.cells_per_side)
+            && self.headings % 2 == 1
+            && self.headings <= 9
             && (0.0..=100.0).contains(&self.confidence)
             && (1..=256).contains(&self.refined)
             && (1..=self.refined).contains(&self.finalists)
+    }
+
+    /// Poses tried about each node.
+    pub(super) const fn poses_per_node(&self) -> usize {
+        self.cells_per_node().saturating_mul(self.headings as usize)
     }
 
     /// Positions tried about each node.

@@ -15,7 +15,7 @@ const LOG_ODDS_PER_CONFIDENCE: f32 = 15.0;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Judgement {
     pub(super) best: Hypothesis,
-    /// Lead over the best rival, times the square root of the length seen in 1000 px.
+    /// Lead over the best rival, times the [weight of what was seen](seen_weight).
     pub(super) confidence: f32,
     /// The best and its rivals, with probabilities that sum to one.
     pub(super) places: Rivals,
@@ -25,14 +25,14 @@ pub(super) struct Judgement {
 pub(super) fn judge<'h>(
     hypotheses: &(impl Iterator<Item = &'h Hypothesis> + Clone),
     database: &TopologicalDatabase<'_>,
-    seen_q4: i32,
+    segment_count: u32,
 ) -> Option<Judgement> {
     let best = *hypotheses.clone().reduce(|best, other| if other.score_q20 > best.score_q20 { other } else { best })?;
     let position = |hypothesis: &Hypothesis| {
         let node = database.node(hypothesis.node()).map_or(Point2::default(), |node| node.position());
         hypothesis.position(node)
     };
-    let scale = math::sqrt(seen_q4 as f32 / 16_000.0) / (1 << 20) as f32;
+    let scale = seen_weight(segment_count) / (1 << 20) as f32;
     let behind = |hypothesis: &Hypothesis| (best.score_q20 - hypothesis.score_q20) as f32 * scale;
     let mut places = Rivals::default();
     let mut confidence = f32::INFINITY;
@@ -56,6 +56,11 @@ pub(super) fn judge<'h>(
     }
     places.normalize();
     Some(Judgement { best, confidence, places })
+}
+
+/// Weight of a lead: each segment is a witness, and their errors average out. Thirty of them weigh one.
+pub(super) fn seen_weight(segment_count: u32) -> f32 {
+    math::sqrt(segment_count as f32 / 30.0)
 }
 
 /// The node nearest to a position.

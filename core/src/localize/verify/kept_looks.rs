@@ -48,6 +48,11 @@ impl<'m> KeptLooks<'m> {
         self.count == self.poses.len()
     }
 
+    /// Segments of all looks.
+    pub(super) fn segment_count(&self) -> u32 {
+        self.poses[..self.count].iter().fold(0, |sum, pose| sum.saturating_add(pose.segment_count))
+    }
+
     /// Length of all segments of all looks in Q4 px.
     pub(super) const fn seen_q4(&self) -> i32 {
         self.seen_q4

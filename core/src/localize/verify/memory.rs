@@ -36,7 +36,7 @@ pub(in crate::localize) const fn memory_len(
     sum(&[
         words::<u8>(DistancePlanes::BYTES),
         words::<ViewSegment>(VIEW_CAPACITY),
-        words::<CellEvidence>(node_count.saturating_mul(verification.cells_per_node())),
+        words::<CellEvidence>(node_count.saturating_mul(verification.poses_per_node())),
         words::<LookPose>(looks),
         words::<SeenSegment>(looks.saturating_mul(config.max_segments as usize)),
         words::<Hypothesis>(node_count.saturating_mul(VerificationConfig::PER_NODE)),
@@ -66,7 +66,7 @@ impl<'m> Memory<'m> {
             Some(Self {
                 planes: rest.take(DistancePlanes::BYTES)?,
                 view: rest.take(VIEW_CAPACITY)?,
-                cells: rest.take(node_count.saturating_mul(verification.cells_per_node()))?,
+                cells: rest.take(node_count.saturating_mul(verification.poses_per_node()))?,
                 poses: rest.take(looks)?,
                 segments: rest.take(looks.saturating_mul(usize::from(config.max_segments)))?,
                 ranked: rest.take(node_count.saturating_mul(VerificationConfig::PER_NODE))?,

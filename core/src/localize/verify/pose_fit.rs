@@ -15,7 +15,7 @@ const SHIFT_PX: f32 = 1.8;
 /// Error of the model across itself \[m\].
 const MODEL_M: f32 = 0.02;
 /// Partners lie at most this far off, round after round \[px\].
-const GATES_PX: [f32; 4] = [16.0, 12.0, 9.0, 9.0];
+const GATES_PX: [f32; 5] = [24.0, 16.0, 12.0, 9.0, 9.0];
 /// Sine of the greatest difference of partners in direction.
 const MAX_SINE: f32 = 0.12;
 /// A pose that moves farther than this was no fit \[m\].

@@ -11,25 +11,29 @@ use crate::math;
 
 /// Poses tried about a hypothesis at a heading: 3 x 3.
 const POSITIONS: usize = 9;
-/// Poses tried about a hypothesis: at three headings.
-pub(super) const CHILDREN: usize = 3 * POSITIONS;
+/// Headings tried about a hypothesis, where the compass errs.
+const HEADINGS: usize = 3;
+/// Poses tried about a hypothesis.
+pub(super) const CHILDREN: usize = HEADINGS * POSITIONS;
+/// Standard deviations of the compass to either side of a heading of the grid that it stands for.
+const GRID_HEADING_LEFT: f32 = 0.7;
 
 /// How a hypothesis is posed more closely.
 #[derive(Debug, Clone, Copy)]
 struct Stage {
     /// Step of the position in cells of the grid: stage by stage the poses fill the cell.
     step: f32,
-    /// Step of the heading, in standard deviations of the compass.
+    /// Step of the heading, in what the grid leaves it to be off.
     heading_step: f32,
     /// What the position may still be off, in cells of the grid.
     position_left: f32,
-    /// What the heading may still be off, in standard deviations of the compass.
+    /// What the heading may still be off, in what the grid leaves it to be.
     heading_left: f32,
 }
 
 const STAGES: [Stage; 2] = [
-    Stage { step: 1.0 / 3.0, heading_step: 1.0, position_left: 0.15, heading_left: 0.5 },
-    Stage { step: 1.0 / 9.0, heading_step: 0.4, position_left: 0.06, heading_left: 0.2 },
+    Stage { step: 1.0 / 3.0, heading_step: 2.0 / 3.0, position_left: 0.15, heading_left: 1.0 / 3.0 },
+    Stage { step: 1.0 / 9.0, heading_step: 2.0 / 9.0, position_left: 0.06, heading_left: 1.0 / 9.0 },
 ];
 
 /// All hypotheses.
@@ -98,26 +102,37 @@ impl<'m> Search<'m> {
         let pose = looks.pose(look);
         let side = i32::from(self.config.cells_per_side);
         let half = side / 2;
+        let heading_left_rad = GRID_HEADING_LEFT * looks.heading_spread_rad();
+        let headings = if heading_left_rad > 0.0 { usize::from(self.config.headings) } else { 1 };
+        let closeness = Closeness { position_m: 0.4 * self.cell_m, heading_rad: heading_left_rad, spacing_px: 14.0 };
+        let per_heading = self.config.cells_per_node();
         self.ranked_count = 0;
-        for (node, cells) in database.nodes().zip(self.cells.chunks_exact_mut(self.config.cells_per_node())) {
-            let step_m = self.cell_m;
-            checker.turn(&node, pose.heading_rad, (pose.way_m, (half + 1) as f32 * step_m));
-            let closeness =
-                Closeness { position_m: 0.4 * step_m, heading_rad: looks.heading_spread_rad(), spacing_px: 14.0 };
+        for (node, cells) in
+            database.nodes().zip(self.cells.chunks_exact_mut(usize::from(self.config.headings) * per_heading))
+        {
             let none = Hypothesis::new(node.id(), [0.0; 2], 0.0);
             let (mut best, mut count) = ([none; VerificationConfig::PER_NODE], 0);
-            for (index, cell) in (0..).zip(cells) {
-                let (column, row) = (index % side - half, index / side - half);
-                // The corners of the square are beyond the node's reach.
-                if column * column + row * row > half * (half + 1) || cell.is_refuted() {
-                    continue;
+            for (turn, cells) in cells.chunks_exact_mut(per_heading).take(headings).enumerate() {
+                let turns = turn as f32 - (headings / 2) as f32;
+                let heading_error_rad = turns * 2.0 * heading_left_rad;
+                let reach_m = (half + 1) as f32 * self.cell_m;
+                checker.turn(&node, pose.heading_rad + heading_error_rad, (pose.way_m, reach_m));
+                for (index, cell) in (0..).zip(cells) {
+                    let (column, row) = (index % side - half, index / side - half);
+                    // The corners of the square are beyond the node's reach.
+                    if column * column + row * row > half * (half + 1) || cell.is_refuted() {
+                        continue;
+                    }
+                    let offset_m = [column as f32 * self.cell_m, row as f32 * self.cell_m];
+                    cell.add(checker.evidence(moved(offset_m, pose.way_m), &closeness));
+                    let evidence = cell.evidence();
+                    let score_q20 = evidence.score_q20(looks.seen_q4());
+                    keep_best(
+                        &mut best,
+                        &mut count,
+                        Hypothesis { offset_m, heading_error_rad, evidence, score_q20, ..none },
+                    );
                 }
-                let offset_m = [column as f32 * step_m, row as f32 * step_m];
-                cell.add(checker.evidence(moved(offset_m, pose.way_m), &closeness));
-                let mut hypothesis = Hypothesis { evidence: cell.evidence(), ..none };
-                hypothesis.offset_m = offset_m;
-                hypothesis.score_q20 = hypothesis.evidence.score_q20(looks.seen_q4());
-                keep_best(&mut best, &mut count, hypothesis);
             }
             self.ranked[self.ranked_count..][..count].copy_from_slice(&best[..count]);
             self.ranked_count += count;
@@ -141,13 +156,13 @@ impl<'m> Search<'m> {
         checker: &mut Checker<'_>,
         looks: &KeptLooks<'_>,
     ) {
-        let spread_rad = looks.heading_spread_rad();
-        let headings: usize = if spread_rad > 0.0 { 3 } else { 1 };
+        let heading_left_rad = GRID_HEADING_LEFT * looks.heading_spread_rad();
+        let headings: usize = if heading_left_rad > 0.0 { HEADINGS } else { 1 };
         let poses = headings * POSITIONS;
         let step_m = stage.step * self.cell_m;
         let closeness = Closeness {
             position_m: stage.position_left * self.cell_m,
-            heading_rad: stage.heading_left * spread_rad,
+            heading_rad: stage.heading_left * heading_left_rad,
             spacing_px: 9.0,
         };
         let child_of = |parent: &Hypothesis, index: usize| {
@@ -157,7 +172,7 @@ impl<'m> Search<'m> {
             Hypothesis::new(
                 parent.node(),
                 [x + column * step_m, y + row * step_m],
-                parent.heading_error_rad + turn * stage.heading_step * spread_rad,
+                parent.heading_error_rad + turn * stage.heading_step * heading_left_rad,
             )
         };
         let parents = &mut self.refined[..keep.min(self.refined_count)];

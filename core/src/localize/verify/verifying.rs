@@ -18,8 +18,8 @@ use crate::localize::{
 const POOR_PX: i32 = 300;
 /// After the last look a lead of this part of the confidence asked for is enough.
 const LAST_CONFIDENCE: f32 = 0.5;
-/// Agreement below which no place of the map is what was seen.
-const OUTSIDE_SCORE: f32 = 0.25;
+/// Agreement that an answer asks for, before the last look and after it: with less the robot is outside the map.
+const LEAST_SCORES: [f32; 2] = [0.5, 0.38];
 /// Rivals less likely than this are not named.
 const LEAST_PROBABILITY: f32 = 0.01;
 
@@ -101,14 +101,14 @@ impl<'m> VerifyingLocalizer<'m> {
     fn decide(&mut self) -> Decision {
         let has_looked_enough = self.looks.is_full();
         let is_poor = self.looks.seen_q4() < POOR_PX * 16;
-        let judgement = judge(&self.search.hypotheses(), &self.database, self.looks.seen_q4());
+        let judgement = judge(&self.search.hypotheses(), &self.database, self.looks.segment_count());
         match judgement {
             Some(judgement) if !is_poor && self.is_sure(&judgement, has_looked_enough) => {
                 Decision::Localized(self.localized(&judgement))
             }
             _ if !has_looked_enough => Decision::LookAgain { turn: self.config.turn },
             Some(_) | None if is_poor => Decision::Unknown { reason: UnknownReason::SceneTooPoor },
-            Some(judgement) if !is_outside(&judgement) => {
+            Some(judgement) if !is_outside(&judgement, true) => {
                 let mut rivals = judgement.places;
                 rivals.retain_likelier(LEAST_PROBABILITY);
                 Decision::Unknown { reason: UnknownReason::Indistinguishable(rivals) }
@@ -119,7 +119,7 @@ impl<'m> VerifyingLocalizer<'m> {
 
     fn is_sure(&self, judgement: &Judgement, is_last_look: bool) -> bool {
         let asked = if is_last_look { self.confidence * LAST_CONFIDENCE } else { self.confidence };
-        judgement.confidence > asked && !is_outside(judgement)
+        judgement.confidence > asked && !is_outside(judgement, is_last_look)
     }
 
     /// The answer: the pose at the last look, and the node nearest to it.
@@ -139,6 +139,6 @@ impl<'m> VerifyingLocalizer<'m> {
 }
 
 /// Whether even the best place agrees too little with what was seen.
-fn is_outside(judgement: &Judgement) -> bool {
-    judgement.best.score_q20 < (OUTSIDE_SCORE * (1 << 20) as f32) as i32
+fn is_outside(judgement: &Judgement, is_last_look: bool) -> bool {
+    judgement.best.score_q20 < (LEAST_SCORES[usize::from(is_last_look)] * (1 << 20) as f32) as i32
 }
