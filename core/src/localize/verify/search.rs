@@ -15,8 +15,9 @@ const POSITIONS: usize = 9;
 const HEADINGS: usize = 3;
 /// Poses tried about a hypothesis.
 pub(super) const CHILDREN: usize = HEADINGS * POSITIONS;
-/// Standard deviations of the compass to either side of a heading of the grid that it stands for.
-const GRID_HEADING_LEFT: f32 = 0.7;
+/// Standard deviations of the compass to either side that a heading of the grid stands for: where it is the only one,
+/// and where it has others beside it.
+const GRID_HEADING_LEFT: [f32; 2] = [1.5, 0.7];
 
 /// How a hypothesis is posed more closely.
 #[derive(Debug, Clone, Copy)]
@@ -96,15 +97,24 @@ impl<'m> Search<'m> {
         }
     }
 
+    /// What the grid leaves the heading to be off \[rad\].
+    fn heading_left_rad(&self, looks: &KeptLooks<'_>) -> f32 {
+        GRID_HEADING_LEFT[usize::from(self.config.headings > 1)] * looks.heading_spread_rad()
+    }
+
     fn check_grid(&mut self, database: &TopologicalDatabase<'_>, checker: &mut Checker<'_>, looks: &KeptLooks<'_>) {
         let Some(look) = looks.count().checked_sub(1) else { return };
         checker.draw(looks, look);
         let pose = looks.pose(look);
         let side = i32::from(self.config.cells_per_side);
         let half = side / 2;
-        let heading_left_rad = GRID_HEADING_LEFT * looks.heading_spread_rad();
+        let heading_left_rad = self.heading_left_rad(looks);
         let headings = if heading_left_rad > 0.0 { usize::from(self.config.headings) } else { 1 };
-        let closeness = Closeness { position_m: 0.4 * self.cell_m, heading_rad: heading_left_rad, spacing_px: 14.0 };
+        let closeness = Closeness {
+            position_m: 0.4 * self.cell_m,
+            heading_rad: math::min(heading_left_rad, looks.heading_spread_rad()),
+            spacing_px: 14.0,
+        };
         let per_heading = self.config.cells_per_node();
         self.ranked_count = 0;
         for (node, cells) in
@@ -156,7 +166,7 @@ impl<'m> Search<'m> {
         checker: &mut Checker<'_>,
         looks: &KeptLooks<'_>,
     ) {
-        let heading_left_rad = GRID_HEADING_LEFT * looks.heading_spread_rad();
+        let heading_left_rad = self.heading_left_rad(looks);
         let headings: usize = if heading_left_rad > 0.0 { HEADINGS } else { 1 };
         let poses = headings * POSITIONS;
         let step_m = stage.step * self.cell_m;
