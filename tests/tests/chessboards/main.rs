@@ -96,13 +96,14 @@ fn every_board_is_found_in_both_images() {
     assert_eq!(pairs(&folder).iter().map(Vec::len).collect::<Vec<_>>(), [54; 13]);
 }
 
-/// With the focal lengths known to 3 px, the rest that epipolar lines can tell agrees with the board's calibration.
+/// Given the focal lengths, the left optical centre and T's y agree with the boards' calibration within 3 standard errors.
 ///
-/// The length of T comes from the prior; rotation about y, the horizontal optical centres and T's z trade against each
-/// other between two nearly parallel cameras (here z comes out 3.2 standard errors from the board's), so they are printed
-/// and not compared. The board's calibration has further distortion coefficients, so that k1 is compared coarsely.
+/// The focal lengths are the boards' own, so nothing tied to them is an independent check. Compared is what agrees: T's z
+/// lies 3.2 standard errors from the boards' and is printed only; k1 lies 2.8 from it and has a bound of its own, 0.05, set
+/// with that in view; of the right camera and the rotation the boards' figures are not at hand. The length of T comes from
+/// the prior.
 #[test]
-fn with_known_focal_lengths_the_parameters_agree_with_those_found_by_the_boards() {
+fn given_the_focal_lengths_the_optical_centre_and_the_height_agree_with_the_boards() {
     let Some(folder) = folder() else { return };
     let (rig, errors, rms_px) = calibrated(prior([536.5, 3.0]), &pairs(&folder).concat());
     assert!(rms_px < 0.2, "corners lie {rms_px} px from their epipolar lines");
@@ -121,12 +122,18 @@ fn with_known_focal_lengths_the_parameters_agree_with_those_found_by_the_boards(
     assert!((rig.left.k1 + 0.281).abs() < 0.05, "{}", rig.left.k1);
 }
 
-/// Without them only the curvature of the image is seen, k1 / f^2, not the focal length itself.
+/// A known shortcoming, held fast: without the focal lengths the estimate is wrong and its covariance does not say so.
+///
+/// From a prior of 520 +- 50 px it comes to 366 +- 28 px, some 6 standard errors below the boards' 536.5 px, and k1 with it,
+/// while corners fit their epipolar lines to 0.11 px. Why is not known; one distortion coefficient may be too few for these
+/// lenses. k1 / f^2, the curvature of the image, comes out 6 % low. Whoever mends this turns the first comparison round.
 #[test]
-fn a_loose_prior_leaves_the_focal_length_open_and_finds_the_curvature() {
+fn without_the_focal_lengths_the_covariance_does_not_cover_the_error() {
     let Some(folder) = folder() else { return };
-    let (rig, errors, rms_px) = calibrated(prior([500.0, 50.0]), &pairs(&folder).concat());
-    assert!(rms_px < 0.2 && errors[0] > 10.0, "{rms_px} {}", errors[0]);
+    let (rig, errors, rms_px) = calibrated(prior([520.0, 50.0]), &pairs(&folder).concat());
+    assert!(rms_px < 0.2, "corners lie {rms_px} px from their epipolar lines");
+    let off_by = (536.5 - rig.left.focal_length_px) / errors[0].hypot(2.9);
+    assert!(off_by > 3.0, "the focal length is now {off_by} standard errors off: the shortcoming is mended");
     let curvature = rig.left.k1 / (rig.left.focal_length_px * rig.left.focal_length_px);
     let by_boards = -0.281 / (536.5 * 536.5);
     assert!((curvature / by_boards - 1.0).abs() < 0.15, "{curvature} {by_boards}");
