@@ -5,7 +5,7 @@
 //! what would reach further from the other end than the side is left out.
 
 use super::scan::RangeScan;
-use crate::geometry::Point2;
+use crate::geometry::{GridWalk, Point2};
 use crate::math;
 
 /// Distances to what is occupied are told up to this many cells.
@@ -169,10 +169,11 @@ impl<'m> Grid<'m> {
             let (sin, cos) = math::sin_cos(heading_rad + direction);
             // What was met may lie in the cell before, so the last half of a cell is not called free.
             let free_cells = range_m / self.cell_m - if is_met { 0.5 } else { 0.0 };
-            let mut trace = Trace::new(position, (cos, sin), self.cell_m);
-            while trace.entered_cells < free_cells {
-                let is_near = trace.entered_cells * self.cell_m < cover_m;
-                let Some(cell) = self.reached(trace.at) else { break };
+            let mut walk = GridWalk::new([position.x / self.cell_m, position.y / self.cell_m], [cos, sin], 1.0);
+            while walk.entered < free_cells {
+                let is_near = walk.entered * self.cell_m < cover_m;
+                let at = At { x: walk.cell[0], y: walk.cell[1] };
+                let Some(cell) = self.reached(at) else { break };
                 let evidence = cell.state & EVIDENCE;
                 let passed = if evidence == 0 { OCCUPIED - 1 } else { (evidence - 1).max(LEAST_EVIDENCE) };
                 let is_new = is_near && cell.state & COVERED == 0;
@@ -181,9 +182,9 @@ impl<'m> Grid<'m> {
                 cell.state = (cell.state & !EVIDENCE) | passed | mark;
                 covered_count += u32::from(is_new);
                 if was_occupied != (passed >= OCCUPIED) {
-                    self.changed = self.changed.with(trace.at);
+                    self.changed = self.changed.with(at);
                 }
-                trace.advance();
+                walk.advance();
             }
             if is_met {
                 self.record_met(Point2::new(position.x + cos * range_m, position.y + sin * range_m));
@@ -253,51 +254,6 @@ impl<'m> Grid<'m> {
                 let number = self.number(At { x, y });
                 self.numbered(number).clearance = nearest as u8;
             }
-        }
-    }
-}
-
-/// The cells along a ray, one after the other (Amanatides and Woo 1987).
-struct Trace {
-    at: At,
-    /// Way from the origin to where the ray enters the cell \[cells\].
-    entered_cells: f32,
-    /// Way to where the ray leaves the column and the row \[cells\].
-    leaves: [f32; 2],
-    /// Way from column to column and from row to row \[cells\].
-    spacing: [f32; 2],
-    step: [i32; 2],
-}
-
-impl Trace {
-    fn new(origin: Point2, direction: (f32, f32), cell_m: f32) -> Self {
-        let (x, y) = (origin.x / cell_m, origin.y / cell_m);
-        let (column, row) = (math::floor(x), math::floor(y));
-        let axis = |along: f32, inside: f32| {
-            let spacing = if math::abs(along) < 1e-9 { 1e9 } else { 1.0 / math::abs(along) };
-            let rest = if along > 0.0 { 1.0 - inside } else { inside };
-            (rest * spacing, spacing, if along > 0.0 { 1 } else { -1 })
-        };
-        let (leaves_x, spacing_x, step_x) = axis(direction.0, x - column);
-        let (leaves_y, spacing_y, step_y) = axis(direction.1, y - row);
-        Self {
-            at: At { x: column as i32, y: row as i32 },
-            entered_cells: 0.0,
-            leaves: [leaves_x, leaves_y],
-            spacing: [spacing_x, spacing_y],
-            step: [step_x, step_y],
-        }
-    }
-
-    fn advance(&mut self) {
-        if self.leaves[0] < self.leaves[1] {
-            self.entered_cells = self.leaves[0];
-            self.leaves[0] += self.spacing[0];
-            self.at.x += self.step[0];
-        } else {
-            self.entered_cells = self.leaves[1];
-            self.leaves[1] += self.spacing[1];
-            self.at.y += self.step[1];
         }
     }
 }

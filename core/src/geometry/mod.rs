@@ -6,6 +6,7 @@
 
 mod angle;
 mod camera;
+mod grid_walk;
 mod heading;
 mod point;
 mod scene;
@@ -15,6 +16,7 @@ mod stereo_rig;
 
 pub use angle::{Angle, BinaryAngle};
 pub use camera::{CameraError, PinholeCamera};
+pub use grid_walk::GridWalk;
 pub use heading::Heading;
 pub use point::{Point2, Point3};
 pub use scene::{CapacityError, Scene, SceneBuffer};

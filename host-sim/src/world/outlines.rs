@@ -5,7 +5,7 @@
 
 use super::Surfaces;
 use super::free_space::{Slab, outline, triangles};
-use edgeloc::geometry::Point2;
+use edgeloc::geometry::{GridWalk, Point2};
 
 /// Side of a bucket \[m\].
 const BUCKET_M: f32 = 0.1;
@@ -61,16 +61,17 @@ impl Outlines {
     /// Distance along a unit `direction` to the first side, if that is within `reach_m`.
     #[must_use]
     pub fn range_m(&self, from: Point2, direction: (f32, f32), reach_m: f32) -> Option<f32> {
-        let mut walk = Walk::new(self, from, direction);
+        let start = [(from.x - self.west) / self.bucket_m, (from.y - self.south) / self.bucket_m];
+        let mut walk = GridWalk::new(start, [direction.0, direction.1], self.bucket_m);
         let mut nearest = f32::INFINITY;
-        while walk.entered_m <= reach_m {
-            if let Some(bucket) = self.bucket(walk.column, walk.row) {
+        while walk.entered <= reach_m {
+            if let Some(bucket) = self.bucket(walk.cell[0].into(), walk.cell[1].into()) {
                 for &side in self.members_of(bucket) {
                     let met = meets(from, direction, &self.sides[side as usize]);
                     nearest = if met < nearest { met } else { nearest };
                 }
             }
-            if nearest <= walk.leaves_m() {
+            if nearest <= walk.leaves() {
                 return (nearest <= reach_m).then_some(nearest);
             }
             walk.advance();
@@ -161,53 +162,6 @@ fn bounds(sides: &[[Point2; 2]]) -> ((f32, f32), (f32, f32)) {
     sides.iter().flatten().fold(((first.x, first.y), (first.x, first.y)), |(low, high), corner| {
         ((low.0.min(corner.x), low.1.min(corner.y)), (high.0.max(corner.x), high.1.max(corner.y)))
     })
-}
-
-/// The buckets along a ray, one after the other (Amanatides and Woo 1987).
-struct Walk {
-    column: i64,
-    row: i64,
-    entered_m: f32,
-    leaves_m: [f32; 2],
-    spacing_m: [f32; 2],
-    step: [i64; 2],
-}
-
-impl Walk {
-    fn new(outlines: &Outlines, from: Point2, direction: (f32, f32)) -> Self {
-        let (x, y) = ((from.x - outlines.west) / outlines.bucket_m, (from.y - outlines.south) / outlines.bucket_m);
-        let (column, row) = (libm::floorf(x), libm::floorf(y));
-        let axis = |along: f32, inside: f32| {
-            let spacing_m = if along.abs() < 1e-9 { 1e9 } else { outlines.bucket_m / along.abs() };
-            let rest = if along > 0.0 { 1.0 - inside } else { inside };
-            (rest * spacing_m, spacing_m, if along > 0.0 { 1 } else { -1 })
-        };
-        let (leaves_x, spacing_x, step_x) = axis(direction.0, x - column);
-        let (leaves_y, spacing_y, step_y) = axis(direction.1, y - row);
-        Self {
-            column: column as i64,
-            row: row as i64,
-            entered_m: 0.0,
-            leaves_m: [leaves_x, leaves_y],
-            spacing_m: [spacing_x, spacing_y],
-            step: [step_x, step_y],
-        }
-    }
-
-    fn leaves_m(&self) -> f32 {
-        self.leaves_m[0].min(self.leaves_m[1])
-    }
-
-    fn advance(&mut self) {
-        self.entered_m = self.leaves_m();
-        if self.leaves_m[0] < self.leaves_m[1] {
-            self.leaves_m[0] += self.spacing_m[0];
-            self.column += self.step[0];
-        } else {
-            self.leaves_m[1] += self.spacing_m[1];
-            self.row += self.step[1];
-        }
-    }
 }
 
 /// Where a ray meets a side; infinity when it does not.
