@@ -84,29 +84,33 @@ impl PinholeCamera {
         Segment2::new(start, end, segment.polarity).ok()
     }
 
-    /// The part of the segment from `start` to `end` inside the image rectangle (Liang and Barsky 1984).
+    /// The part of the segment from `start` to `end` inside the image rectangle.
     #[must_use]
     pub fn clip_to_image(&self, start: Point2, end: Point2) -> Option<(Point2, Point2)> {
-        let (dx, dy) = (end.x - start.x, end.y - start.y);
         let (width, height) = (f32::from(self.width_px), f32::from(self.height_px));
-        let borders = [(-dx, start.x), (dx, width - start.x), (-dy, start.y), (dy, height - start.y)];
-        let (mut enter, mut leave) = (0.0_f32, 1.0_f32);
-        for (outward, room) in borders {
-            if outward < 0.0 {
-                enter = math::max(enter, room / outward);
-            } else if outward > 0.0 {
-                leave = math::min(leave, room / outward);
-            } else if room < 0.0 {
-                return None;
-            }
-        }
-        if enter >= leave {
-            return None;
-        }
+        let (enter, leave) = inside_part(start, end, width, height)?;
         let within = |coordinate, side| math::max(math::min(coordinate, side), 0.0);
         let inside = |p: Point2| Point2::new(within(p.x, width), within(p.y, height));
         Some((inside(start.lerp(end, enter)), inside(start.lerp(end, leave))))
     }
+}
+
+/// The fractions of the way from `start` to `end` between which it lies in the rectangle from the origin to `width` and
+/// `height` (Liang and Barsky 1984).
+pub(crate) fn inside_part(start: Point2, end: Point2, width: f32, height: f32) -> Option<(f32, f32)> {
+    let (dx, dy) = (end.x - start.x, end.y - start.y);
+    let borders = [(-dx, start.x), (dx, width - start.x), (-dy, start.y), (dy, height - start.y)];
+    let (mut enter, mut leave) = (0.0_f32, 1.0_f32);
+    for (outward, room) in borders {
+        if outward < 0.0 {
+            enter = math::max(enter, room / outward);
+        } else if outward > 0.0 {
+            leave = math::min(leave, room / outward);
+        } else if room < 0.0 {
+            return None;
+        }
+    }
+    (enter < leave).then_some((enter, leave))
 }
 
 /// The part of a segment of the camera frame with `z >= near_limit_m`.

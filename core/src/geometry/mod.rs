@@ -15,6 +15,7 @@ mod segment3;
 mod stereo_rig;
 
 pub use angle::{Angle, BinaryAngle};
+pub(crate) use camera::inside_part;
 pub use camera::{CameraError, PinholeCamera};
 pub use grid_walk::GridWalk;
 pub use heading::Heading;

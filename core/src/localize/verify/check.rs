@@ -9,7 +9,7 @@ use super::responses::Responses;
 use super::seen_segment::SeenSegment;
 use super::view::{ViewSegment, turn_model};
 use crate::database::Node;
-use crate::geometry::StereoRig;
+use crate::geometry::{Point2, StereoRig, inside_part};
 use crate::localize::segment_filter::SegmentFilter;
 use crate::math;
 
@@ -205,7 +205,8 @@ impl<'m> Checker<'m> {
             [frame.center_px[0] + p[0] * scale, frame.center_px[1] + p[1] * scale]
         };
         let (start, end) = (image(start, start_inverse), image(end, end_inverse));
-        let (enter, leave) = inside_part(start, end, frame)?;
+        let point = |[x, y]: [f32; 2]| Point2::new(x, y);
+        let (enter, leave) = inside_part(point(start), point(end), frame.width_px, frame.height_px)?;
         let at = |t: f32| [start[0] + (end[0] - start[0]) * t, start[1] + (end[1] - start[1]) * t];
         let inverse_at = |t: f32| start_inverse + (end_inverse - start_inverse) * t;
         Some(Projected {
@@ -220,23 +221,6 @@ impl<'m> Checker<'m> {
 fn cut(behind: [f32; 3], before: [f32; 3], near_m: f32) -> [f32; 3] {
     let t = (near_m - behind[2]) / (before[2] - behind[2]);
     [behind[0] + (before[0] - behind[0]) * t, behind[1] + (before[1] - behind[1]) * t, near_m]
-}
-
-/// The fractions of the way from `start` to `end` between which it lies in the image (Liang and Barsky 1984).
-fn inside_part(start: [f32; 2], end: [f32; 2], frame: &ImageFrame) -> Option<(f32, f32)> {
-    let (dx, dy) = (end[0] - start[0], end[1] - start[1]);
-    let borders = [(-dx, start[0]), (dx, frame.width_px - start[0]), (-dy, start[1]), (dy, frame.height_px - start[1])];
-    let (mut enter, mut leave) = (0.0_f32, 1.0_f32);
-    for (outward, room) in borders {
-        if outward < 0.0 {
-            enter = math::max(enter, room / outward);
-        } else if outward > 0.0 {
-            leave = math::min(leave, room / outward);
-        } else if room < 0.0 {
-            return None;
-        }
-    }
-    (enter < leave).then_some((enter, leave))
 }
 
 /// Length of a vector by its sides' magnitudes, within 1.3 %: no square root.
