@@ -1,6 +1,7 @@
 //! `report.html`: one self-contained page of a run, with inline drawings and native tooltips, no scripts.
 
-use super::drawing::{self, SERIES_COUNT, percent};
+use super::document::{document, inline};
+use super::drawing::{SERIES_COUNT, percent};
 use super::{
     FloorPlan, FreeCells, PAPER_INTERVAL, RowSummary, RunResults, Summary, looks_histogram, rate_strip,
     success_by_distance, trial_marks, worst_trials,
@@ -8,11 +9,10 @@ use super::{
 use crate::monte_carlo::{Outcome, TrialRecord};
 use crate::scenario::{Row, Start};
 use crate::world::WireframeWorld;
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, html};
 use svg::Node as _;
 use svg::node::element::{Definitions, Group, SVG, Use};
 
-const STYLE: &str = include_str!("page.css");
 /// Failures listed with the command that replays them.
 const WORST_COUNT: usize = 3;
 /// Rows drawn one by one; a study of many rows is read from its table.
@@ -25,31 +25,16 @@ const DRAWN_ROWS: usize = 12;
 pub fn page(results: &RunResults, world: Option<&WireframeWorld>, free: Option<&FreeCells>, folder: &str) -> String {
     let plans: Vec<FloorPlan> = results.nodes.iter().map(|nodes| FloorPlan::new(world, free, nodes)).collect();
     let title = format!("edgeloc run: {}", results.scenario.name);
-    let markup = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { (title) }
-                style { (PreEscaped(STYLE)) (PreEscaped(drawing::STYLE)) }
-            }
-            body { main {
-                header {
-                    h1 { (title) }
-                    p { (subtitle(results)) }
-                }
-                (headline(results))
-                (distance(results))
-                (self::plans(results, &plans))
-                (looks(results))
-                (worst(results, folder))
-                (facts(results, world.is_some()))
-                (configuration(results))
-            } }
-        }
+    let body = html! {
+        (headline(results))
+        (distance(results))
+        (self::plans(results, &plans))
+        (looks(results))
+        (worst(results, folder))
+        (facts(results, world.is_some()))
+        (configuration(results))
     };
-    markup.into_string()
+    document(&title, &subtitle(results), &body)
 }
 
 fn subtitle(results: &RunResults) -> String {
@@ -307,10 +292,6 @@ fn legend(rows: &[Row]) -> Markup {
 
 fn key(series: usize) -> Markup {
     html! { span class={ "key k" (series % SERIES_COUNT) } {} }
-}
-
-fn inline(drawing: &SVG) -> PreEscaped<String> {
-    PreEscaped(drawing.to_string())
 }
 
 #[cfg(test)]
