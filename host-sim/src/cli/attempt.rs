@@ -2,8 +2,7 @@
 
 use super::console::{self, Format};
 use super::worlds;
-use edgeloc::database::TopologicalDatabase;
-use edgeloc_sim::monte_carlo::{self, Site, SourceEffect, TrialRecord, TruePose, look_images};
+use edgeloc_sim::monte_carlo::{Replay, Site, SourceEffect, TrialRecord, TruePose};
 use edgeloc_sim::report::{FloorPlan, LookExplanation, TrialFacts, to_svg_file, trial_page};
 use edgeloc_sim::scenario::Setting;
 use miette::{IntoDiagnostic, Result, WrapErr};
@@ -50,9 +49,8 @@ impl Attempt {
         folder: &Path,
     ) -> Result<Self> {
         let mut looks = Vec::new();
-        let record = monte_carlo::replay(site, setting, trial, start, |event| {
-            looks.push(LookExplanation::new(looks.len() + 1, event));
-        });
+        let replay = Replay::new(site, setting, trial, start).into_diagnostic()?;
+        let record = replay.run(|event| looks.push(LookExplanation::new(looks.len() + 1, event)));
         let record = record.into_diagnostic()?;
         let plan = FloorPlan::new(Some(&site.world), Some(&worlds::free_cells(&site.free_space)), &site.nodes);
         std::fs::create_dir_all(folder)
@@ -67,15 +65,12 @@ impl Attempt {
         }
         let parameters = setting.parameters().into_iter().collect();
         let headings: Vec<_> = looks.iter().map(|look| look.heading).collect();
-        let images = look_images(site, setting, trial, start, &headings);
-        let map = site.learn_map(&setting.scenario, record.map).into_diagnostic()?;
-        let map = TopologicalDatabase::open(&map).into_diagnostic()?;
-        let config = setting.localizer_config();
+        let images = replay.look_images(&headings);
         let facts = TrialFacts {
             record: &record,
             parameters: &parameters,
-            config,
-            map,
+            config: setting.localizer_config(),
+            map: replay.map().into_diagnostic()?,
             plan: &plan,
             looks: &looks,
             images: &images,

@@ -1,11 +1,9 @@
 //! What happened to the images of a look on their way to the localiser: for those who want to see a trial whole.
 
-use super::looks::Looks;
-use super::{Site, TruePose, draw_start};
 use crate::camera::StereoObservation;
-use crate::scenario::Setting;
-use crate::uncertainty::UncertaintySource;
-use edgeloc::geometry::{Heading, Point2, Segment2};
+use crate::learning::CalibratedRig;
+use crate::uncertainty::{NoiseKey, Sources, UncertaintySource};
+use edgeloc::geometry::{Point2, Segment2};
 use serde::Serialize;
 
 /// Both images of a look, before and after the uncertainty sources.
@@ -46,33 +44,22 @@ pub struct SourceEffect {
     pub unmatched_features: usize,
 }
 
-/// The images of each look of a trial again, for the true `headings` at which it looked.
-///
-/// `start` of `None` is the trial's own pose, as in [`replay`](super::replay).
-#[must_use]
-pub fn look_images(
-    site: &Site,
-    setting: &Setting,
-    trial: u32,
-    start: Option<TruePose>,
-    headings: &[Heading],
-) -> Vec<LookImages> {
-    let (scenario, sources) = (&setting.scenario, &setting.scenario.uncertainty);
-    let map = trial / scenario.trials_per_map;
-    let start = start.unwrap_or_else(|| draw_start(site, scenario, setting.row.start, trial));
-    let mut looks = Looks::new(site, scenario.seed, trial, map, start);
-    let robot = site.calibrated_rig(sources, scenario.seed, map);
-    let mut take = |(look, heading): (usize, &Heading)| {
-        let clean = looks.clean(*heading).clone();
+impl LookImages {
+    /// What is left of clean images after the sources, as a robot that knows its rig so sees them.
+    pub(super) fn perturbed(
+        clean: StereoObservation,
+        sources: &Sources,
+        key: &NoiseKey,
+        robot: &CalibratedRig,
+    ) -> Self {
         let (mut perturbed, mut before, mut effects) = (clean.clone(), clean.clone(), Vec::new());
-        sources.apply_watched(&mut perturbed, &looks.noise_key(look), |source, after| {
+        sources.apply_watched(&mut perturbed, key, |source, after| {
             effects.push(SourceEffect::of(source, &before, after));
             before.clone_from(after);
         });
         robot.rectify(&mut perturbed);
-        LookImages { clean, perturbed, effects }
-    };
-    headings.iter().enumerate().map(&mut take).collect()
+        Self { clean, perturbed, effects }
+    }
 }
 
 impl SourceEffect {

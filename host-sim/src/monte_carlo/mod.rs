@@ -3,6 +3,7 @@
 mod look_images;
 mod looks;
 mod record;
+mod replay;
 mod runner;
 mod shard;
 mod site;
@@ -11,9 +12,10 @@ mod start;
 mod statistics;
 mod trial;
 
-pub use look_images::{LookImages, SourceEffect, look_images};
+pub use look_images::{LookImages, SourceEffect};
 pub use record::{Outcome, TrialRecord};
-pub use runner::{Part, RunError, RunOutcome, TimedTrial, replay, run, run_part};
+pub use replay::{Replay, replay};
+pub use runner::{Part, RunError, RunOutcome, TimedTrial, run, run_part};
 pub use shard::{Shard, ShardError, count_trials};
 pub use site::{Site, SiteError};
 pub use sites::{PrepareError, Sites};

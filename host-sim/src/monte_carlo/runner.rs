@@ -9,7 +9,7 @@
 use super::looks::Looks;
 use super::sites::Sites;
 use super::trial::Trial;
-use super::{LookEvent, Site, TrialRecord, TruePose, draw_start};
+use super::{TrialRecord, draw_start};
 use crate::scenario::Setting;
 use edgeloc::database::{OpenError, TopologicalDatabase, WriteError};
 use edgeloc::localize::Localizer;
@@ -97,31 +97,6 @@ pub fn run_part(sites: &Sites, part: &Part<'_>, on_trial: &(dyn Fn(TimedTrial) +
     Ok(())
 }
 
-/// Runs one trial of a setting again, or a robot put down at a pose of one's own, and tells `watch` of every look.
-///
-/// `site` is one prepared for the setting's scenario. `start` of `None` draws the trial's own pose: the record is then the
-/// one of the run.
-///
-/// # Errors
-/// When the map can't be learned.
-pub fn replay(
-    site: &Site,
-    setting: &Setting,
-    trial: u32,
-    start: Option<TruePose>,
-    watch: impl FnMut(&LookEvent<'_>),
-) -> Result<TrialRecord, RunError> {
-    let scenario = &setting.scenario;
-    let map = trial / scenario.trials_per_map;
-    let bytes = site.learn_map(scenario, map)?;
-    let database = TopologicalDatabase::open(&bytes)?;
-    let start = start.unwrap_or_else(|| draw_start(site, scenario, setting.row.start, trial));
-    let mut looks = Looks::new(site, scenario.seed, trial, map, start);
-    let mut memory = vec![0; memory_len(setting, database.node_count())];
-    let map_bytes = bytes.len() as u32;
-    Ok(Trial { site, setting, trial, map, map_bytes, start }.run(database, &mut memory, &mut looks, watch))
-}
-
 /// Runs the trials of a part that share one draw of the map's noise.
 fn run_block(sites: &Sites, part: &Part<'_>, map: u32, on_trial: &(dyn Fn(TimedTrial) + Sync)) -> Result<(), RunError> {
     let settings = sites.settings();
@@ -184,7 +159,7 @@ fn same(count: usize, is_same: impl Fn(usize, usize) -> bool) -> Vec<Vec<usize>>
 }
 
 /// Words of memory for the localiser of a setting.
-fn memory_len(setting: &Setting, node_count: usize) -> usize {
+pub(super) fn memory_len(setting: &Setting, node_count: usize) -> usize {
     Localizer::memory_len(&setting.localizer_config(), node_count)
 }
 
