@@ -15,4 +15,5 @@ mod view_score;
 
 pub use bhattacharyya::{BinPair, Panel, PanelRow, RootRows};
 pub use kernels::LANES;
+pub(crate) use kernels::{Body, Work, run};
 pub use view_score::{ViewScore, score_view};

@@ -3,6 +3,7 @@
 //! World frame: metres, z up, the floor a robot drives on at z = 0.
 
 mod crease;
+mod crop;
 pub mod file;
 mod free_space;
 pub mod import;
@@ -16,6 +17,7 @@ pub mod viewpoints;
 mod visibility;
 mod wireframe;
 
+pub use crop::{Rectangle, crop};
 pub use free_space::{FreeSpace, FreeSpaceError, FreeSpaceOptions};
 pub use occlusion::Occluders;
 pub use outlines::Outlines;

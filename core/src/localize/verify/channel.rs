@@ -15,6 +15,19 @@ pub(super) fn channel_of(dx: f32, dy: f32) -> usize {
     unfolded(sector, is_falling)
 }
 
+/// The channel of a direction, without a branch, as a vector of them wants it.
+#[inline(always)]
+pub(super) fn channel_in_lane(dx: f32, dy: f32) -> u32 {
+    let x = if dx < 0.0 { -dx } else { dx };
+    let y = if dy < 0.0 { -dy } else { dy };
+    let sector = u32::from(y > BORDERS[0] * x)
+        + u32::from(y > BORDERS[1] * x)
+        + u32::from(y > BORDERS[2] * x)
+        + u32::from(y > BORDERS[3] * x);
+    let is_falling = (dx < 0.0) != (dy < 0.0);
+    (if is_falling { CHANNELS as u32 - sector } else { sector }) & (CHANNELS as u32 - 1)
+}
+
 /// The channel next nearest to a direction.
 pub(super) fn neighbor_of(dx: f32, dy: f32) -> usize {
     let (x, y, is_falling) = folded(dx, dy);
@@ -51,6 +64,7 @@ mod tests {
             let nearest = libm::roundf(position) as usize;
             let next = if position > nearest as f32 { nearest + 1 } else { nearest + 7 };
             assert_eq!(channel_of(dx, dy), nearest % CHANNELS, "{degrees}");
+            assert_eq!(channel_in_lane(dx, dy) as usize, nearest % CHANNELS, "{degrees}");
             assert_eq!(neighbor_of(dx, dy), next % CHANNELS, "{degrees}");
         }
     }

@@ -1,16 +1,18 @@
 //! One hypothesis against one look: what the model predicts is looked up in the distance planes.
 
 use super::Evidence;
-use super::channel::channel_of;
-use super::distance_planes::{COLUMNS, DistancePlanes, ROWS};
+use super::channel::{CHANNELS, channel_in_lane};
+use super::distance_planes::{DistancePlanes, PLANE};
 use super::image_frame::ImageFrame;
 use super::kept_looks::KeptLooks;
+use super::lanes::{LANES, Lane, LanePart, MAX_POINTS, SegmentEnds, Tables, rounded};
 use super::responses::Responses;
 use super::seen_segment::SeenSegment;
 use super::view::{ViewSegment, turn_model};
 use crate::database::Node;
 use crate::geometry::{Point2, StereoRig, inside_part};
 use crate::localize::segment_filter::SegmentFilter;
+use crate::matching::{Body, Work, run};
 use crate::math;
 
 /// Segments of a node that can be seen from near it at a heading; a node that shows more shows the first so many.
@@ -52,6 +54,8 @@ pub(super) struct Checker<'m> {
     near_m: f32,
     /// Slopes of the left and right border of the view.
     view_slopes: [f32; 2],
+    /// Slopes of the upper and lower border of the view.
+    view_heights: [f32; 2],
     storage: &'m mut [ViewSegment],
     view_count: usize,
     /// Sine and cosine of the heading that the model is turned to.
@@ -63,12 +67,14 @@ impl<'m> Checker<'m> {
     pub(super) fn new(
         rig: &StereoRig,
         filter: SegmentFilter,
-        planes: &'m mut [u8],
+        planes: &'m mut [u8; DistancePlanes::BYTES],
         storage: &'m mut [ViewSegment],
     ) -> Self {
         let frame = ImageFrame::new(&rig.camera);
         let left = frame.center_px[0] / frame.focal_px;
         let right = (frame.width_px - frame.center_px[0]) / frame.focal_px;
+        let top = frame.center_px[1] / frame.focal_px;
+        let bottom = (frame.height_px - frame.center_px[1]) / frame.focal_px;
         Self {
             planes: DistancePlanes::new(planes),
             responses: Responses::new(),
@@ -76,6 +82,7 @@ impl<'m> Checker<'m> {
             filter,
             near_m: rig.near_limit_m,
             view_slopes: [left, right],
+            view_heights: [top, bottom],
             storage,
             view_count: 0,
             sin_cos: (0.0, 1.0),
@@ -128,6 +135,9 @@ impl<'m> Checker<'m> {
         self.sin_cos = math::sin_cos(heading_rad);
         let center = self.in_camera(offset_m);
         self.view_count = turn_model(node, self.sin_cos, self.view_slopes, (center, reach_m), self.storage);
+        for segment in &mut self.storage[..self.view_count] {
+            segment.measure(center, self.frame.focal_px);
+        }
     }
 
     /// An offset along the axes of the world as one to the right and forward.
@@ -136,49 +146,123 @@ impl<'m> Checker<'m> {
         [x * sin - y * cos, x * cos + y * sin]
     }
 
-    /// Evidence for a camera at `offset_m` from the node, axes of the world.
-    pub(super) fn evidence(&self, offset_m: [f32; 2], closeness: &Closeness) -> Evidence {
-        let offset = self.in_camera(offset_m);
+    /// Evidence for cameras at `offsets_m` from the node, axes of the world, as many as there are lanes at most; nothing in
+    /// the lanes beyond.
+    pub(super) fn evidence(&self, offsets_m: &[[f32; 2]], closeness: &Closeness) -> Lane<Evidence> {
+        let mut offsets = [[0.0; LANES]; 2];
+        for (lane, offset_m) in offsets_m.iter().enumerate().take(LANES) {
+            let [right, forward] = self.in_camera(*offset_m);
+            (offsets[0][lane], offsets[1][lane]) = (right, forward);
+        }
+        run(Batch { checker: self, offsets: &offsets, closeness })
+    }
+
+    /// How many points of a segment are looked up, when they are to lie `per_px` to a pixel.
+    fn point_count(segment: &ViewSegment, per_px: f32) -> usize {
+        ((segment.extent_px * per_px + 0.5) as usize).clamp(1, MAX_POINTS)
+    }
+
+    #[inline(always)]
+    fn evidence_in_lanes(&self, offsets: &[Lane<f32>; 2], closeness: &Closeness) -> Lane<Evidence> {
         let focal = self.frame.focal_px;
         let (position, model) = (focal * closeness.position_m, focal * MODEL_ERROR_M);
         let depth_part = position * position + model * model;
         let heading = focal * closeness.heading_rad;
         let fixed_part = FIXED_TOLERANCE_PX * FIXED_TOLERANCE_PX + heading * heading;
         let per_px = 1.0 / closeness.spacing_px;
-        let mut evidence = Evidence::default();
+        let tables = Tables { planes: self.planes.all(), responses: self.responses.tables() };
+        let backgrounds = self.responses.backgrounds();
+        let mut explained = [0_i32; LANES];
+        let mut total = [0_i32; LANES];
         for segment in self.view() {
-            let Some(projected) = self.project(segment, offset) else { continue };
-            let (start, end) = (projected.start_px, projected.end_px);
-            let (dx, dy) = (end[0] - start[0], end[1] - start[1]);
-            let (width_px, height_px) = (dx.abs(), dy.abs());
-            let length = octagonal_length(width_px, height_px);
-            if length < self.filter.min_length_px || height_px < self.filter.horizontal_slope * width_px {
+            let image = self.project_in_lanes(segment, offsets);
+            let is_seen = image.is_seen(&self.filter);
+            if !is_seen.iter().fold(false, |any, is_seen| any | is_seen) {
                 continue;
             }
-            let inverse_depth = 0.5 * (projected.inverse_depth[0] + projected.inverse_depth[1]);
-            let tolerance = fixed_part + depth_part * inverse_depth * inverse_depth;
-            let width =
-                usize::from(tolerance > 100.0) + usize::from(tolerance > 400.0) + usize::from(tolerance > 1600.0);
-            let channel = channel_of(dx, dy);
-            let (plane, table) = (self.planes.plane(channel), self.responses.table(width));
-            let count = ((length * per_px + 0.5) as i32).max(1);
-            let share = 0.25 / count as f32;
-            let (step_x, step_y) = (dx * share, dy * share);
-            let (mut x, mut y) = (start[0] * 0.25 + 0.5 * step_x, start[1] * 0.25 + 0.5 * step_y);
-            let mut sum = 0_i32;
-            for _ in 0..count {
-                let (column, row) = ((x as usize).min(COLUMNS - 1), (y as usize).min(ROWS - 1));
-                sum += i32::from(table[usize::from(plane[row * COLUMNS + column])]);
-                x += step_x;
-                y += step_y;
+            let mut width = [0_u32; LANES];
+            let mut plane = [0_u32; LANES];
+            let mut background = [0_i32; LANES];
+            let mut weight = [0_i32; LANES];
+            for lane in 0..LANES {
+                let tolerance = fixed_part + depth_part * image.inverse_depth[lane] * image.inverse_depth[lane];
+                width[lane] = u32::from(tolerance > 100.0) + u32::from(tolerance > 400.0) + u32::from(tolerance > 1600.0);
+                plane[lane] = channel_in_lane(image.way[0][lane], image.way[1][lane]);
             }
-            let background = i32::from(self.responses.background(channel, width));
-            let weight = (length * 16.0) as i32 * WEIGHTS_Q8[width] / 256;
-            // At most 16,384 x 255: far from the border of i32.
-            evidence.explained_q4 += weight * (sum / count - background) / 255;
-            evidence.total_q4 += weight * (255 - background) / 255;
+            let count = Self::point_count(segment, per_px);
+            let share = 0.25 * POINT_SHARES[count];
+            let mut first = [[0.0; LANES]; 2];
+            let mut step = [[0.0; LANES]; 2];
+            for axis in 0..2 {
+                for lane in 0..LANES {
+                    step[axis][lane] = image.way[axis][lane] * share;
+                    first[axis][lane] = image.start[axis][lane] * 0.25 + 0.5 * step[axis][lane];
+                }
+            }
+            for lane in 0..LANES {
+                let (channel, width) = (plane[lane] as usize & (CHANNELS - 1), width[lane] as usize & 3);
+                background[lane] = i32::from(backgrounds[channel][width]);
+                let length_q4 = if is_seen[lane] { rounded(image.length[lane] * 16.0) } else { 0 };
+                weight[lane] = (length_q4 * WEIGHTS_Q8[width]) >> 8;
+                plane[lane] *= PLANE as u32;
+            }
+            let sum = tables.sum(count, (first, step), &plane, &width);
+            let share_q16 = POINT_SHARES_Q16[count];
+            for lane in 0..LANES {
+                // At most 16,384 x 255: far from the border of i32.
+                let mean = (sum[lane] * share_q16) >> 16;
+                explained[lane] += (weight[lane] * (mean - background[lane]) + 128) >> 8;
+                total[lane] += (weight[lane] * (255 - background[lane]) + 128) >> 8;
+            }
+        }
+        let mut evidence = [Evidence::default(); LANES];
+        for lane in 0..LANES {
+            evidence[lane] = Evidence { explained_q4: explained[lane], total_q4: total[lane] };
         }
         evidence
+    }
+
+    /// Images of a model segment for cameras at `offsets` (right, forward), cut at the near limit and the border.
+    #[inline(always)]
+    fn project_in_lanes(&self, segment: &ViewSegment, offsets: &[Lane<f32>; 2]) -> LaneImage {
+        let (frame, [left, right]) = (&self.frame, self.view_slopes);
+        let ([start_x, start_y, start_z], [end_x, end_y, end_z]) = (segment.start, segment.end);
+        let (mut x, mut z) = ([[0.0_f32; LANES]; 2], [[0.0_f32; LANES]; 2]);
+        for lane in 0..LANES {
+            x[0][lane] = start_x - offsets[0][lane];
+            x[1][lane] = end_x - offsets[0][lane];
+            z[0][lane] = start_z - offsets[1][lane];
+            z[1][lane] = end_z - offsets[1][lane];
+        }
+        let [top, bottom] = self.view_heights;
+        let ends = SegmentEnds { x, y: [start_y, end_y], z };
+        let mut part = LanePart::WHOLE;
+        part.cut(&ends, |_, _, z| z - self.near_m);
+        part.cut(&ends, |x, _, z| x + left * z);
+        part.cut(&ends, |x, _, z| right * z - x);
+        part.cut(&ends, |_, y, z| y + top * z);
+        part.cut(&ends, |_, y, z| bottom * z - y);
+        let LanePart { enter, leave } = part;
+        let SegmentEnds { x, z, .. } = ends;
+        let mut image = LaneImage::EMPTY;
+        for lane in 0..LANES {
+            let (way_x, way_y, way_z) = (x[1][lane] - x[0][lane], end_y - start_y, z[1][lane] - z[0][lane]);
+            let (from, to) = (enter[lane], leave[lane]);
+            let start_inverse = 1.0 / (z[0][lane] + way_z * from);
+            let end_inverse = 1.0 / (z[0][lane] + way_z * to);
+            let (start_scale, end_scale) = (frame.focal_px * start_inverse, frame.focal_px * end_inverse);
+            let image_start = [(x[0][lane] + way_x * from) * start_scale, (start_y + way_y * from) * start_scale];
+            let image_end = [(x[0][lane] + way_x * to) * end_scale, (start_y + way_y * to) * end_scale];
+            for axis in 0..2 {
+                image.start[axis][lane] = frame.center_px[axis] + image_start[axis];
+                image.way[axis][lane] = image_end[axis] - image_start[axis];
+            }
+            let (width, height) = (magnitude(image.way[0][lane]), magnitude(image.way[1][lane]));
+            image.length[lane] = octagonal_length(width, height);
+            image.inverse_depth[lane] = 0.5 * (start_inverse + end_inverse);
+            image.is_inside[lane] = from < to;
+        }
+        image
     }
 
     /// Image of a model segment for a camera at `offset_m` (right, forward), cut at the near limit and the border.
@@ -190,9 +274,9 @@ impl<'m> Checker<'m> {
             if end[2] < near_m {
                 return None;
             }
-            start = cut(start, end, near_m);
+            start = cut_near(start, end, near_m);
         } else if end[2] < near_m {
-            end = cut(end, start, near_m);
+            end = cut_near(end, start, near_m);
         }
         let is_right = start[0] > right * start[2] && end[0] > right * end[2];
         let is_left = start[0] < -left * start[2] && end[0] < -left * end[2];
@@ -217,14 +301,93 @@ impl<'m> Checker<'m> {
     }
 }
 
+/// Poses that are checked together.
+struct Batch<'a, 'm> {
+    checker: &'a Checker<'m>,
+    offsets: &'a [Lane<f32>; 2],
+    closeness: &'a Closeness,
+}
+
+impl Work for Batch<'_, '_> {
+    type Output = Lane<Evidence>;
+
+    #[inline(always)]
+    fn run<B: Body>(self, _: B) -> Lane<Evidence> {
+        self.checker.evidence_in_lanes(self.offsets, self.closeness)
+    }
+}
+
+/// Images of one model segment.
+#[derive(Debug)]
+struct LaneImage {
+    start: [Lane<f32>; 2],
+    way: [Lane<f32>; 2],
+    length: Lane<f32>,
+    inverse_depth: Lane<f32>,
+    is_inside: Lane<bool>,
+}
+
+impl LaneImage {
+    const EMPTY: Self = Self {
+        start: [[0.0; LANES]; 2],
+        way: [[0.0; LANES]; 2],
+        length: [0.0; LANES],
+        inverse_depth: [0.0; LANES],
+        is_inside: [false; LANES],
+    };
+
+    /// In which lanes the segment is in view, long enough and not near-horizontal.
+    #[inline(always)]
+    fn is_seen(&self, filter: &SegmentFilter) -> Lane<bool> {
+        let mut is_seen = [false; LANES];
+        for lane in 0..LANES {
+            let (width, height) = (magnitude(self.way[0][lane]), magnitude(self.way[1][lane]));
+            is_seen[lane] = self.is_inside[lane]
+                & (self.length[lane] >= filter.min_length_px)
+                & (height >= filter.horizontal_slope * width);
+        }
+        is_seen
+    }
+}
+
+/// `1 / count`.
+const POINT_SHARES: [f32; MAX_POINTS + 1] = {
+    let mut shares = [0.0; MAX_POINTS + 1];
+    let mut count = 1;
+    while count <= MAX_POINTS {
+        shares[count] = 1.0 / count as f32;
+        count += 1;
+    }
+    shares
+};
+
+/// `1 / count` in Q16, rounded up so that equal responses keep their mean.
+const POINT_SHARES_Q16: [i32; MAX_POINTS + 1] = {
+    let mut shares = [0; MAX_POINTS + 1];
+    let mut count = 1;
+    while count <= MAX_POINTS {
+        shares[count] = (1 << 16) / count as i32 + 1;
+        count += 1;
+    }
+    shares
+};
+
+/// Magnitude of a number, without a call.
+#[inline(always)]
+fn magnitude(x: f32) -> f32 {
+    if x < 0.0 { -x } else { x }
+}
+
 /// The point where the way from `behind` to `before` comes into view.
-fn cut(behind: [f32; 3], before: [f32; 3], near_m: f32) -> [f32; 3] {
+fn cut_near(behind: [f32; 3], before: [f32; 3], near_m: f32) -> [f32; 3] {
     let t = (near_m - behind[2]) / (before[2] - behind[2]);
     [behind[0] + (before[0] - behind[0]) * t, behind[1] + (before[1] - behind[1]) * t, near_m]
 }
 
 /// Length of a vector by its sides' magnitudes, within 1.3 %: no square root.
+#[inline(always)]
 fn octagonal_length(width: f32, height: f32) -> f32 {
     let (long, short) = if width > height { (width, height) } else { (height, width) };
-    math::max(0.99 * long + 0.197 * short, 0.84 * long + 0.561 * short)
+    let (flat, steep) = (0.99 * long + 0.197 * short, 0.84 * long + 0.561 * short);
+    if steep > flat { steep } else { flat }
 }

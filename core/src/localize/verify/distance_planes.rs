@@ -16,16 +16,21 @@ const DIAGONAL: u8 = 7;
 /// One plane of distances for each orientation channel.
 #[derive(Debug)]
 pub(super) struct DistancePlanes<'m> {
-    planes: &'m mut [u8],
+    planes: &'m mut [u8; CHANNELS * PLANE],
 }
 
 impl<'m> DistancePlanes<'m> {
     /// Bytes of all planes.
     pub(super) const BYTES: usize = CHANNELS * PLANE;
 
-    /// Planes in `planes`, [`Self::BYTES`] long, still without meaning.
-    pub(super) fn new(planes: &'m mut [u8]) -> Self {
+    /// Planes in `planes`, still without meaning.
+    pub(super) fn new(planes: &'m mut [u8; CHANNELS * PLANE]) -> Self {
         Self { planes }
+    }
+
+    /// The planes of all channels, one behind the other.
+    pub(super) const fn all(&self) -> &[u8; CHANNELS * PLANE] {
+        self.planes
     }
 
     /// The plane of a channel.

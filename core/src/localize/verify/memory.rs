@@ -15,7 +15,7 @@ use crate::localize::{LocalizerConfig, NodeScore};
 /// The parts that the caller's memory is divided into.
 #[derive(Debug)]
 pub(super) struct Memory<'m> {
-    pub(super) planes: &'m mut [u8],
+    pub(super) planes: &'m mut [u8; DistancePlanes::BYTES],
     pub(super) view: &'m mut [ViewSegment],
     pub(super) cells: &'m mut [CellEvidence],
     pub(super) poses: &'m mut [LookPose],
@@ -64,7 +64,7 @@ impl<'m> Memory<'m> {
         let mut rest = Rest::new(memory);
         let mut divide = || {
             Some(Self {
-                planes: rest.take(DistancePlanes::BYTES)?,
+                planes: rest.take(DistancePlanes::BYTES)?.try_into().ok()?,
                 view: rest.take(VIEW_CAPACITY)?,
                 cells: rest.take(node_count.saturating_mul(verification.poses_per_node()))?,
                 poses: rest.take(looks)?,

@@ -19,6 +19,7 @@ mod hypothesis;
 mod image_frame;
 mod judgement;
 mod kept_looks;
+mod lanes;
 mod memory;
 mod pose_check;
 mod pose_fit;

@@ -45,7 +45,7 @@ impl<'m> PoseCheck<'m> {
             CapacityError { what: "pose check in 64-bit words", capacity: memory.len(), needed: Self::memory_len() };
         let mut rest = Rest::new(memory);
         let mut divide =
-            || Some((rest.take(DistancePlanes::BYTES)?, rest.take(VIEW_CAPACITY)?, rest.take(Self::MAX_SEGMENTS)?));
+            || Some((rest.take(DistancePlanes::BYTES)?.try_into().ok()?, rest.take(VIEW_CAPACITY)?, rest.take(Self::MAX_SEGMENTS)?));
         let (planes, view, seen): (_, _, &mut [SeenSegment]) = divide().ok_or(too_small)?;
         let mut checker = Checker::new(rig, SegmentFilter::new(config), planes, view);
         let (filter, frame) = (*checker.filter(), *checker.frame());
@@ -68,6 +68,6 @@ impl<'m> PoseCheck<'m> {
         [position_m, heading_rad, spacing_px]: [f32; 3],
     ) -> Evidence {
         self.checker.turn(node, heading.angle().radians(), (offset_m, 0.01));
-        self.checker.evidence(offset_m, &Closeness { position_m, heading_rad, spacing_px })
+        self.checker.evidence(&[offset_m], &Closeness { position_m, heading_rad, spacing_px })[0]
     }
 }

@@ -43,11 +43,13 @@ impl Responses {
         }
     }
 
-    pub(super) fn table(&self, width: usize) -> &[u8; 256] {
-        &self.table[width]
+    /// The responses of each width to each distance.
+    pub(super) const fn tables(&self) -> &[[u8; 256]; WIDTHS_PX.len()] {
+        &self.table
     }
 
-    pub(super) fn background(&self, channel: usize, width: usize) -> u8 {
-        self.background[channel][width]
+    /// The background of each channel and width.
+    pub(super) const fn backgrounds(&self) -> &[[u8; WIDTHS_PX.len()]; CHANNELS] {
+        &self.background
     }
 }

@@ -4,13 +4,16 @@ use super::check::{Checker, Closeness};
 use super::evidence::CellEvidence;
 use super::hypothesis::{Hypothesis, keep_best};
 use super::kept_looks::KeptLooks;
+use super::lanes::LANES;
 use super::spacing::reach_m;
 use super::{Evidence, VerificationConfig};
 use crate::database::TopologicalDatabase;
 use crate::math;
 
-/// Poses tried about a hypothesis at a heading: 3 x 3.
-const POSITIONS: usize = 9;
+/// Positions tried along either side of the square about a hypothesis.
+const SIDE: usize = 4;
+/// Poses tried about a hypothesis at a heading.
+const POSITIONS: usize = SIDE * SIDE;
 /// Headings tried about a hypothesis, where the compass errs.
 const HEADINGS: usize = 3;
 /// Poses tried about a hypothesis.
@@ -33,8 +36,8 @@ struct Stage {
 }
 
 const STAGES: [Stage; 2] = [
-    Stage { step: 1.0 / 3.0, heading_step: 2.0 / 3.0, position_left: 0.15, heading_left: 1.0 / 3.0 },
-    Stage { step: 1.0 / 9.0, heading_step: 2.0 / 9.0, position_left: 0.06, heading_left: 1.0 / 9.0 },
+    Stage { step: 1.0 / 4.0, heading_step: 2.0 / 3.0, position_left: 0.11, heading_left: 1.0 / 3.0 },
+    Stage { step: 1.0 / 16.0, heading_step: 2.0 / 9.0, position_left: 0.03, heading_left: 1.0 / 9.0 },
 ];
 
 /// All hypotheses.
@@ -116,6 +119,9 @@ impl<'m> Search<'m> {
             spacing_px: 14.0,
         };
         let per_heading = self.config.cells_per_node();
+        let cell_m = self.cell_m;
+        let offset_of =
+            |index: i32| [(index % side - half) as f32 * cell_m, (index / side - half) as f32 * cell_m];
         self.ranked_count = 0;
         for (node, cells) in
             database.nodes().zip(self.cells.chunks_exact_mut(usize::from(self.config.headings) * per_heading))
@@ -127,21 +133,31 @@ impl<'m> Search<'m> {
                 let heading_error_rad = turns * 2.0 * heading_left_rad;
                 let reach_m = (half + 1) as f32 * self.cell_m;
                 checker.turn(&node, pose.heading_rad + heading_error_rad, (pose.way_m, reach_m));
-                for (index, cell) in (0..).zip(cells) {
+                let mut live = (0..).zip(cells).filter(|(index, cell)| {
                     let (column, row) = (index % side - half, index / side - half);
                     // The corners of the square are beyond the node's reach.
-                    if column * column + row * row > half * (half + 1) || cell.is_refuted() {
-                        continue;
+                    column * column + row * row <= half * (half + 1) && !cell.is_refuted()
+                });
+                loop {
+                    let mut batch: [Option<(i32, &mut CellEvidence)>; LANES] = [const { None }; LANES];
+                    let mut offsets_m = [[0.0; 2]; LANES];
+                    let mut taken = 0;
+                    for (place, (index, cell)) in batch.iter_mut().zip(&mut live) {
+                        offsets_m[taken] = moved(offset_of(index), pose.way_m);
+                        *place = Some((index, cell));
+                        taken += 1;
                     }
-                    let offset_m = [column as f32 * self.cell_m, row as f32 * self.cell_m];
-                    cell.add(checker.evidence(moved(offset_m, pose.way_m), &closeness));
-                    let evidence = cell.evidence();
-                    let score_q20 = evidence.score_q20(looks.seen_q4());
-                    keep_best(
-                        &mut best,
-                        &mut count,
-                        Hypothesis { offset_m, heading_error_rad, evidence, score_q20, ..none },
-                    );
+                    if taken == 0 {
+                        break;
+                    }
+                    let evidence = checker.evidence(&offsets_m[..taken], &closeness);
+                    for ((index, cell), look) in batch.into_iter().flatten().zip(evidence) {
+                        cell.add(look);
+                        let evidence = cell.evidence();
+                        let (offset_m, score_q20) = (offset_of(index), evidence.score_q20(looks.seen_q4()));
+                        let new = Hypothesis { offset_m, heading_error_rad, evidence, score_q20, ..none };
+                        keep_best(&mut best, &mut count, new);
+                    }
                 }
             }
             self.ranked[self.ranked_count..][..count].copy_from_slice(&best[..count]);
@@ -176,7 +192,8 @@ impl<'m> Search<'m> {
             spacing_px: 9.0,
         };
         let child_of = |parent: &Hypothesis, index: usize| {
-            let (column, row) = ((index % 3) as f32 - 1.0, (index / 3 % 3) as f32 - 1.0);
+            let middle = 0.5 * (SIDE - 1) as f32;
+            let (column, row) = ((index % SIDE) as f32 - middle, (index / SIDE % SIDE) as f32 - middle);
             let turn = (index / POSITIONS) as f32 - (headings / 2) as f32;
             let [x, y] = parent.offset_m;
             Hypothesis::new(
@@ -200,10 +217,13 @@ impl<'m> Search<'m> {
                 for (turn, group) in children.chunks_exact_mut(POSITIONS).enumerate() {
                     let first = turn * POSITIONS;
                     let heading_rad = pose.heading_rad + child_of(parent, first).heading_error_rad;
-                    checker.turn(&node, heading_rad, (moved(parent.offset_m, pose.way_m), 1.5 * step_m));
-                    for (index, child) in group.iter_mut().enumerate() {
-                        let offset_m = child_of(parent, first + index).offset_m;
-                        *child = child.plus(checker.evidence(moved(offset_m, pose.way_m), &closeness));
+                    checker.turn(&node, heading_rad, (moved(parent.offset_m, pose.way_m), 2.0 * step_m));
+                    let mut offsets_m = [[0.0; 2]; POSITIONS];
+                    for (index, offset_m) in offsets_m.iter_mut().enumerate() {
+                        *offset_m = moved(child_of(parent, first + index).offset_m, pose.way_m);
+                    }
+                    for (child, look) in group.iter_mut().zip(checker.evidence(&offsets_m, &closeness)) {
+                        *child = child.plus(look);
                     }
                 }
             }

@@ -11,6 +11,18 @@ use zerocopy::{FromBytes, Immutable, IntoBytes};
 pub(super) struct ViewSegment {
     pub(super) start: [f32; 3],
     pub(super) end: [f32; 3],
+    /// Length of its image from the middle of the poses that are to be checked, roughly \[px\].
+    pub(super) extent_px: f32,
+}
+
+impl ViewSegment {
+    /// Measures the extent from `center_m` (right, forward).
+    pub(super) fn measure(&mut self, center_m: [f32; 2], focal_px: f32) {
+        let ([start_x, start_y, start_z], [end_x, end_y, end_z]) = (self.start, self.end);
+        let away = math::length(0.5 * (start_x + end_x) - center_m[0], 0.5 * (start_z + end_z) - center_m[1]);
+        let across = math::max(math::abs(end_x - start_x), math::abs(end_y - start_y));
+        self.extent_px = focal_px * math::max(across, 0.5 * math::abs(end_z - start_z)) / math::max(away, 0.3);
+    }
 }
 
 /// Turns the node's segments to the heading given by its sine and cosine and puts those into `storage` that a camera
@@ -33,7 +45,7 @@ pub(super) fn turn_model(
         let may_be_seen = farthest > 0.0 && leftmost < right * farthest && rightmost > -left * farthest;
         if may_be_seen {
             let Some(place) = storage.get_mut(count) else { break };
-            *place = ViewSegment { start, end };
+            *place = ViewSegment { start, end, extent_px: 0.0 };
             count += 1;
         }
     }

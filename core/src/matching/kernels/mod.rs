@@ -14,13 +14,13 @@ use super::{BinPair, PanelRow};
 pub const LANES: usize = 16;
 
 /// A way to compute coefficients.
-pub(super) trait Body: Copy {
+pub(crate) trait Body: Copy {
     /// The best coefficient in Q30 of one scene row with a panel's lines; 0 if none is positive.
     fn best_coefficient(self, row: &[BinPair], panel: &[PanelRow]) -> i32;
 }
 
 /// Work that is compiled once for each body. Everything it calls has to be `inline(always)` to profit.
-pub(super) trait Work {
+pub(crate) trait Work {
     /// What comes of it.
     type Output;
 
@@ -29,11 +29,11 @@ pub(super) trait Work {
 }
 
 #[cfg(not(target_arch = "x86_64"))]
-pub(super) fn run<W: Work>(work: W) -> W::Output {
+pub(crate) fn run<W: Work>(work: W) -> W::Output {
     work.run(portable::Portable)
 }
 #[cfg(target_arch = "x86_64")]
-pub(super) use x86_64::run;
+pub(crate) use x86_64::run;
 
 #[cfg(all(test, target_arch = "x86_64"))]
 mod tests {

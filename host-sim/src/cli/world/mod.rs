@@ -1,5 +1,6 @@
-//! `world`: generate, import, describe and draw worlds, and say what is visible in them.
+//! `world`: generate, import, crop, describe and draw worlds, and say what is visible in them.
 
+mod crop;
 mod description;
 mod edit;
 mod generate;
@@ -13,15 +14,17 @@ use clap::Subcommand;
 use edgeloc::geometry::Point2;
 use miette::Result;
 
-/// Generate, import, describe and draw worlds, and say what is visible in them.
+/// Generate, import, crop, describe and draw worlds, and say what is visible in them.
 #[derive(Debug, Subcommand)]
 #[command(after_help = "Examples:\n  edgeloc world generate --seed 7\n  edgeloc world import small_house.world\n  \
+                        edgeloc world crop willowgarage.edgeworld 12,0.5,40,14\n  \
                         edgeloc world info small_house.edgeworld\n  edgeloc world view small_house.edgeworld\n  \
                         edgeloc world visibility small_house.edgeworld\n  \
                         edgeloc world edit small_house.edgeworld")]
 pub(super) enum World {
     Generate(generate::Generate),
     Import(import::Import),
+    Crop(crop::Crop),
     Info(info::Info),
     View(view::View),
     Visibility(visibility::Visibility),
@@ -33,6 +36,7 @@ impl World {
         match self {
             Self::Generate(verb) => verb.execute(),
             Self::Import(verb) => verb.execute(),
+            Self::Crop(verb) => verb.execute(),
             Self::Info(verb) => verb.execute(),
             Self::View(verb) => verb.execute(),
             Self::Visibility(verb) => verb.execute(),

@@ -13,7 +13,7 @@ use avx512::Avx512;
 use sse2::Sse2;
 
 /// Does `work` with the best body that the machine has.
-pub(in crate::matching) fn run<W: Work>(work: W) -> W::Output {
+pub(crate) fn run<W: Work>(work: W) -> W::Output {
     if let Some(body) = Avx512::detect() {
         // SAFETY: the body is proof that the machine has the instructions.
         unsafe { run_avx512(work, body) }
