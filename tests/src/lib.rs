@@ -1,5 +1,6 @@
 //! Whole-system tests of edgeloc: naive oracles, golden vectors and the real data they run on.
 
+pub mod corner_pairs;
 pub mod golden;
 pub mod matcher;
 pub mod oracle;

@@ -1,16 +1,20 @@
 //! Over many robots, the errors of a calibration are as large and as correlated as its covariance says.
 
-use edgeloc::geometry::{Point2, StereoRig};
-use edgeloc::math::double;
+use edgeloc::geometry::StereoRig;
 use edgeloc::stereo::{Calibration, CornerPair, PARAMETER_COUNT, ParameterMatrix, ParameterVector, StereoParameters};
 use edgeloc_sim::random::Stream;
+use edgeloc_tests::corner_pairs::{NOISE_PX, corner};
 use rayon::prelude::*;
 
-const ROBOTS: u64 = 400;
-const NOISE_PX: f64 = 0.15;
-/// Standard deviations of the prior, as after a bench calibration. From one twice as wide, what the four updates carry
-/// on is bent by what they don't know yet: the mean chi-squared of the best direction, 200,000 times sharper than that
-/// prior, is then 1.5 instead of 1.2.
+const ROBOTS: u64 = 1000;
+/// Standard deviations of the prior, as after a bench calibration.
+///
+/// The errors are a little larger than the covariance says, and that is no chance. Over 4000 robots the mean chi-squared of
+/// the sharpest direction, whose variance the corners divide by 54,000, is 1.13 +- 0.03, and 6.4 % of its errors lie beyond
+/// the 95 % bounds; of the other identified ones 1.02 to 1.07 +- 0.02 and 5.0 to 5.9 %. It is 1.09 without wrong matches,
+/// some of which lie inside the gate, 1.06 with all corners in one batch besides, and 1.02 +- 0.02 without wrong matches
+/// from a prior half as wide: what is left is how the model curves over the width of the prior. From a prior twice as wide
+/// it is 1.5.
 const PRIOR: [f64; PARAMETER_COUNT] =
     [3.0, 1e-3, 2.0, 2.0, 0.01, 3.0, 1e-3, 2.0, 2.0, 0.01, 5e-3, 5e-3, 5e-3, 5e-4, 5e-4, 5e-4];
 /// A direction of the parameters is identified when the corners divide its variance by this.
@@ -29,37 +33,6 @@ fn meant() -> StereoParameters {
 fn built(stream: &mut Stream) -> StereoParameters {
     let error = ParameterVector::from_fn(|index, _| PRIOR[index] * stream.circular_gaussian()[0]);
     StereoParameters::from_vector(&(meant().to_vector() + error))
-}
-
-/// A corner somewhere in the left image, 1 to 6 m away, as the two cameras see it.
-fn corner(rig: &StereoParameters, stream: &mut Stream) -> CornerPair {
-    let pixel = |at: [f64; 2], stream: &mut Stream| {
-        let [x, y] = stream.circular_gaussian();
-        Point2::new((at[0] + x * NOISE_PX) as f32, (at[1] + y * NOISE_PX) as f32)
-    };
-    let [x, y] = rig.left.direction([stream.uniform(0.0, 640.0), stream.uniform(0.0, 480.0)]);
-    let depth_m = stream.uniform(1.0, 6.0);
-    let [beside_x, beside_y, beside_z] = moved(rig, [x * depth_m, y * depth_m, depth_m]);
-    let left = pixel(rig.left.pixel([x, y]), stream);
-    let mut right = pixel(rig.right.pixel([beside_x / beside_z, beside_y / beside_z]), stream);
-    if stream.chance(0.01) {
-        // A wrong match, anywhere in a circle of 10 px.
-        let (angle, radius) = (stream.uniform(0.0, core::f64::consts::TAU), 10.0 * stream.unit().sqrt());
-        let (sin, cos) = double::sin_cos(angle);
-        right = Point2::new(right.x + (radius * cos) as f32, right.y + (radius * sin) as f32);
-    }
-    CornerPair { left, right }
-}
-
-/// A point of the left camera's frame in the right one's: R p + T, R by its axis and angle.
-fn moved(rig: &StereoParameters, p: [f64; 3]) -> [f64; 3] {
-    let w = rig.rotation_rad;
-    let angle = w.iter().map(|w| w * w).sum::<f64>().sqrt();
-    let n = w.map(|w| w / angle);
-    let (sin, cos) = double::sin_cos(angle);
-    let dot: f64 = n.iter().zip(p).map(|(n, p)| n * p).sum();
-    let cross = [n[1] * p[2] - n[2] * p[1], n[2] * p[0] - n[0] * p[2], n[0] * p[1] - n[1] * p[0]];
-    [0, 1, 2].map(|axis| p[axis] * cos + cross[axis] * sin + n[axis] * dot * (1.0 - cos) + rig.translation_m[axis])
 }
 
 /// One robot's calibration from four views: squared errors along the independent directions, in their own variances,
@@ -90,19 +63,23 @@ fn squared_errors(robot: u64) -> Vec<(f64, f64)> {
 #[test]
 fn errors_lie_inside_their_covariance_in_every_identified_direction() {
     let robots: Vec<Vec<(f64, f64)>> = (0..ROBOTS).into_par_iter().map(squared_errors).collect();
-    let mut identified = 0;
+    let (mut identified, mut all) = (0, 0.0);
     for direction in 0..PARAMETER_COUNT {
         let mean = |value: fn(&(f64, f64)) -> f64| {
             robots.iter().map(|robot| value(&robot[direction])).sum::<f64>() / ROBOTS as f64
         };
         let (chi_squared, gain) = (mean(|found| found.0), mean(|found| found.1));
         println!("direction {direction}: mean chi-squared {chi_squared:.3}, variance divided by {gain:.1}");
-        // The mean of 400 chi-squared numbers of one degree of freedom has a standard deviation of 0.07.
+        // The mean of 1000 chi-squared numbers of one degree of freedom has a standard deviation of 0.045.
         if gain > IDENTIFIED {
             identified += 1;
-            assert!((0.75..1.25).contains(&chi_squared), "direction {direction}: {chi_squared}");
+            all += chi_squared;
+            assert!((0.87..1.27).contains(&chi_squared), "direction {direction}: {chi_squared}");
         }
     }
+    let all = all / f64::from(identified);
+    println!("mean of the {identified} identified directions {all:.3}");
+    assert!((1.0..1.11).contains(&all), "{all}");
     assert!(identified >= 6, "{identified} directions");
     // The length of T is what the prior said, for every robot.
     assert!(robots.iter().all(|robot| robot.last().is_some_and(|found| (found.1 - 1.0).abs() < 0.01)));
