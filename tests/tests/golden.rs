@@ -30,11 +30,12 @@ fn mismatches(golden: &Golden) -> Vec<(String, String)> {
 fn the_committed_vectors_are_what_is_made_today() {
     let (made, committed) = (&*MADE, &*COMMITTED);
     let remedy = "if that is meant: EDGELOC_BLESS=1 cargo test -p edgeloc-tests --test golden, and commit the change";
-    let lines = committed.expected.lines().zip(made.expected.lines());
-    if let Some((old, new)) = lines.into_iter().find(|(old, new)| old != new) {
-        panic!("the golden answers changed, first\n  from {old}\n  to   {new}\n{remedy}");
+    for (old, new) in [(&committed.expected, &made.expected), (&committed.learned, &made.learned)] {
+        if let Some((old, new)) = old.lines().zip(new.lines()).find(|(old, new)| old != new) {
+            panic!("the golden answers changed, first\n  from {old}\n  to   {new}\n{remedy}");
+        }
+        assert!(old == new, "there are more or fewer golden answers than committed; {remedy}");
     }
-    assert!(committed.expected == made.expected, "there are more or fewer golden answers than committed; {remedy}");
     assert!(committed.map == made.map, "the golden map changed; {remedy}");
     assert!(committed.looks == made.looks, "the golden looks changed; {remedy}");
 }
@@ -80,6 +81,23 @@ fn every_kind_of_answer_is_covered() {
         "Config(MaxLooks)",
     ] {
         assert!(count(part) > 0, "no golden answer holds `{part}`");
+    }
+}
+
+#[test]
+fn every_kind_of_thing_learned_is_covered() {
+    let learned = &COMMITTED.learned;
+    for part in [
+        "rejected_pairs: 0",
+        "rejected_pairs: 1",
+        "rig 3.3: (Ok(",
+        "rig 3 error: Ok(",
+        "Err(Deviation), Err(Noise), Err(Corner { index: 0 }), Err(Parameters)",
+        "Finish(ClosedRoom",
+        "Finish(Explored",
+        "Finish(StepLimit)",
+    ] {
+        assert!(learned.contains(part), "nothing learned holds `{part}`");
     }
 }
 

@@ -2,9 +2,11 @@
 //!
 //! Three files in `tests/fixtures/golden/`: a map of a few nodes of the generated office, the looks of some hundred
 //! attempts in it ([`edgeloc_firmware::looks`]), and one line of text for each look with the decision and all scores.
-//! Boards hold them in flash and compare; a test holds them against what is made today.
+//! Boards hold them in flash and compare; a test holds them against what is made today. A fourth, `learned.txt`, pins
+//! what robots [learn](learned()) by themselves, on the host alone.
 
 mod attempts;
+mod learned;
 mod looks_writer;
 mod site;
 
@@ -12,6 +14,8 @@ use std::path::PathBuf;
 use std::{fs, io};
 
 use edgeloc_firmware::MEMORY_WORDS;
+
+pub use learned::learned;
 
 /// The golden vectors in memory.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -22,6 +26,8 @@ pub struct Golden {
     pub looks: Vec<u8>,
     /// A line for each look.
     pub expected: String,
+    /// A line for each batch of corners and each step of an exploration.
+    pub learned: String,
 }
 
 impl Golden {
@@ -38,7 +44,7 @@ impl Golden {
             expected.push('\n');
         })
         .expect("looks just written can be replayed");
-        Self { map, looks, expected }
+        Self { map, looks, expected, learned: learned() }
     }
 
     /// Reads the committed ones.
@@ -46,8 +52,9 @@ impl Golden {
     /// # Errors
     /// When a file is missing or can't be read.
     pub fn load() -> io::Result<Self> {
-        let [map, looks, expected] = Self::paths();
-        Ok(Self { map: fs::read(map)?, looks: fs::read(looks)?, expected: fs::read_to_string(expected)? })
+        let [map, looks, expected, learned] = Self::paths();
+        let (expected, learned) = (fs::read_to_string(expected)?, fs::read_to_string(learned)?);
+        Ok(Self { map: fs::read(map)?, looks: fs::read(looks)?, expected, learned })
     }
 
     /// Replaces the committed ones.
@@ -55,14 +62,15 @@ impl Golden {
     /// # Errors
     /// When a file can't be written.
     pub fn save(&self) -> io::Result<()> {
-        let [map, looks, expected] = Self::paths();
+        let [map, looks, expected, learned] = Self::paths();
+        fs::write(learned, &self.learned)?;
         fs::write(map, &self.map)?;
         fs::write(looks, &self.looks)?;
         fs::write(expected, &self.expected)
     }
 
-    fn paths() -> [PathBuf; 3] {
+    fn paths() -> [PathBuf; 4] {
         let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/golden"));
-        ["office.map", "looks.bin", "expected.txt"].map(|name| folder.join(name))
+        ["office.map", "looks.bin", "expected.txt", "learned.txt"].map(|name| folder.join(name))
     }
 }
