@@ -40,8 +40,9 @@ pub struct CalibrationUpdate {
 const HUBER: f64 = 2.0;
 /// Beyond how many standard deviations a pair is a wrong match.
 const GATE: f64 = 4.0;
-/// Steps tried before a calibration is given up.
-const MAX_STEPS: u32 = 100;
+/// Steps tried before a calibration is given up: along the valley of a focal length that corners hardly tell, two hundred
+/// have been seen to be needed.
+const MAX_STEPS: u32 = 500;
 /// Settled when a step moves the estimate by less than this, in squared standard deviations.
 const SETTLED: f64 = 1e-8;
 /// Damping at the start, its factor for a step too many, and where a step is given up.
