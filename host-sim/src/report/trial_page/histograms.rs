@@ -1,6 +1,6 @@
 //! Pairwise geometric histograms as pictures: of the scene's longest lines, beside their best partners in a prediction.
 
-use super::super::drawing::{drawing, text, tidy, tooltip};
+use super::super::drawing::{drawing, line, text, tidy, tooltip};
 use crate::report::LookExplanation;
 use edgeloc::database::Node as MapNode;
 use edgeloc::geometry::{Segment2, StereoRig};
@@ -56,7 +56,7 @@ pub(super) fn histograms(
             best.length_px
         );
         let (width, height) = SIZE_PX;
-        let drawing = drawing(2.0 * width + 120.0, height + 46.0)
+        let drawing = drawing(2.0 * width + 120.0, height + 48.0)
             .add(heat_map(own, &config.shape, (56.0, 20.0), "scene"))
             .add(heat_map(best, &config.shape, (width + 112.0, 20.0), "prediction"));
         Some(HistogramPair { caption, drawing })
@@ -97,6 +97,8 @@ fn heat_map(histogram: &Histogram, shape: &PghShape, at: (f64, f64), name: &str)
     let (width, height) = SIZE_PX;
     let (distance_bins, angle_bins) = (usize::from(shape.distance_bins), usize::from(shape.angle_bins));
     let (cell_width, cell_height) = (width / angle_bins as f64, height / distance_bins as f64);
+    let period_deg = f64::from(shape.period_radians().to_degrees());
+    let bin_deg = period_deg / angle_bins as f64;
     let frame = Rectangle::new().set("class", "frame").set("x", left).set("y", top);
     let mut map = Group::new().add(frame.set("width", width).set("height", height));
     let most = histogram.roots.iter().copied().fold(1e-9, f64::max);
@@ -111,17 +113,58 @@ fn heat_map(histogram: &Histogram, shape: &PghShape, at: (f64, f64), name: &str)
                 .set("height", tidy(cell_height))
                 .set("fill-opacity", tidy(root / most))
                 .add(tooltip(format!(
-                    "distance bin {row}, angle bin {column}: {:.2} % of the mass",
+                    "{}, {:.0}° ± {:.0}°: {:.2} % of the mass",
+                    distance_range(shape, row),
+                    column as f64 * bin_deg,
+                    bin_deg / 2.0,
                     100.0 * root * root
                 ))),
         );
     }
     let nearest = if shape.distance == DistanceKind::Signed { -shape.max_distance_px } else { 0.0 };
-    let turn_deg = shape.period_radians().to_degrees();
     map.append(text("middle", (left + width / 2.0, top - 6.0), name));
-    map.append(text("start", (left, top + height + 15.0), "0°"));
-    map.append(text("end", (left + width, top + height + 15.0), format!("{turn_deg:.0}°")));
+    for angle_deg in (0_u16..360).step_by(90).map(f64::from).filter(|angle_deg| *angle_deg < period_deg) {
+        // A bin's centre, not its border, lies at a whole multiple of its width.
+        let x = left + (angle_deg / bin_deg + 0.5) * cell_width;
+        map.append(line("axis", (x, top + height), (x, top + height + 4.0)));
+        map.append(text("middle", (x, top + height + 17.0), format!("{angle_deg:.0}°")));
+    }
     map.append(text("end", (left - 4.0, top + 10.0), format!("{:.0}", shape.max_distance_px)));
     map.append(text("end", (left - 4.0, top + height), format!("{nearest:.0} px")));
     map
+}
+
+/// The perpendicular distances that a bin covers, in words.
+fn distance_range(shape: &PghShape, row: usize) -> String {
+    let nearest = if shape.distance == DistanceKind::Signed { -f64::from(shape.max_distance_px) } else { 0.0 };
+    let width = f64::from(shape.distance_bin_width_px());
+    let from = nearest + row as f64 * width;
+    format!("{from:.0} to {:.0} px", from + width)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The number of an attribute of an element.
+    fn number(element: &str, attribute: &str) -> f64 {
+        let value = element.split_once(&format!(" {attribute}=\"")).expect("the attribute").1;
+        value.split('"').next().and_then(|value| value.parse().ok()).expect("a number")
+    }
+
+    #[test]
+    fn the_mark_of_an_angle_stands_at_the_centre_of_its_bin() {
+        for (uses_polarity, angle_deg, column) in [(true, 0, 0), (true, 90, 8), (true, 270, 24), (false, 90, 16)] {
+            let shape = PghShape { uses_polarity, ..PghShape::paper() };
+            let mut roots = vec![0.0; shape.bin_count()];
+            roots[column] = 1.0;
+            let svg = heat_map(&Histogram { length_px: 50.0, roots }, &shape, (56.0, 20.0), "scene").to_string();
+            let svg = svg.replace('\n', "");
+            let element = |is_it: &dyn Fn(&str) -> bool| svg.split('<').find(|part| is_it(part)).expect("an element");
+            let heat = element(&|part| part.contains("class=\"heat\""));
+            let label = element(&|part| part.starts_with("text") && part.ends_with(&format!(">{angle_deg}°")));
+            let center = number(heat, "x") + number(heat, "width") / 2.0;
+            assert!((number(label, "x") - center).abs() < 0.02, "{angle_deg} degrees: {label} for {heat}");
+        }
+    }
 }
