@@ -19,7 +19,7 @@ scene_segments, scored_nodes, leader_score, runner_up_score, truth_score, map_by
 map_segments, message of an error); parameters, by their keys in a scenario, as they were applied; looks (look, heading_deg, compass_deg told \
 to the localiser, seen_segments, used_segments, decision in words, and nodes, of each its score, \
 was_candidate and is_candidate: before and after the look); effects, of each look what each uncertainty source did to both \
-images (source, magnitude, unit, features, changed_features, pieces and length_px before and after, rms_shift_px, \
+images (source, magnitude, unit, features, changed_features, removed_features, added_features, pieces and length_px before and after, rms_shift_px, \
 greatest_shift_px, flipped_pieces, unmatched_features); page, with every intermediate as a picture; drawings, the files";
 
 /// One attempt, as `--format json` prints it.

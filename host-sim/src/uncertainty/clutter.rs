@@ -46,6 +46,10 @@ impl UncertaintySource for Clutter {
             }
         });
     }
+
+    fn replaces_features(&self) -> bool {
+        true
+    }
 }
 
 /// A segment inside the image, at most `length_px` long; none in the rare case that its end points coincide.

@@ -66,6 +66,11 @@ pub trait UncertaintySource: SourceSetting {
     /// Perturbs an observation, whether enabled or not. A source that acts on something else than the segments of
     /// images leaves this alone and has a verb of its own.
     fn apply(&self, _observation: &mut StereoObservation, _stream: &mut Stream) {}
+
+    /// Whether a feature it changes is gone, and what stands in its place is another: the two are not compared.
+    fn replaces_features(&self) -> bool {
+        false
+    }
 }
 
 /// Changes every feature by draws of its own, which neither the other features nor what other sources did to them can

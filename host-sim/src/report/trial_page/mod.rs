@@ -130,19 +130,22 @@ fn effects_table(effects: &[SourceEffect]) -> Markup {
             div.wide { table {
                 thead { tr {
                     @for (class, name) in [
-                        ("", "source"), ("number", "magnitude"), ("number", "features changed"), ("number", "pieces"),
-                        ("number", "length kept"), ("number", "shift, rms"), ("number", "shift, most"), ("number", "flipped"),
-                        ("number", "not matched"),
+                        ("", "source"), ("number", "magnitude"), ("number", "features changed"), ("number", "removed"),
+                        ("number", "added"), ("number", "pieces"), ("number", "length"), ("number", "shift, rms"),
+                        ("number", "shift, most"), ("number", "flipped"), ("number", "not matched"),
                     ] { th class=(class) { (name) } }
                 } }
                 tbody { @for effect in effects { tr {
                     td { (effect.source) br; span.quiet { (effect.unit) } }
                     td.number { (effect.magnitude) }
                     td.number { (effect.changed_features) " of " (effect.features) }
+                    td.number { (effect.removed_features) }
+                    td.number { (effect.added_features) }
                     td.number { (effect.pieces[0]) " → " (effect.pieces[1]) }
                     td.number { (format!("{:.1} %", 100.0 * effect.length_px[1] / effect.length_px[0].max(1e-9))) }
-                    td.number { (format!("{:.2} px", effect.rms_shift_px)) }
-                    td.number { (format!("{:.2} px", effect.greatest_shift_px)) }
+                    @for shift_px in [effect.rms_shift_px, effect.greatest_shift_px] {
+                        td.number { @if shift_px > 0.0 { (format!("{shift_px:.2} px")) } @else { "–" } }
+                    }
                     td.number { (effect.flipped_pieces) }
                     td.number { (effect.unmatched_features) }
                 } } }
