@@ -183,6 +183,12 @@ fn a_world_is_generated_described_drawn_learned_and_localised_in() {
     assert_eq!(attempt["looks"].as_array().map(Vec::len), attempt["drawings"].as_array().map(Vec::len));
     assert!(path.join("drawings/look-01.svg").is_file());
 
+    let at = ["--at", &place, "--format", "json", "--out", "verified", "--set", "localizer.kind=edgeloc"];
+    let verified = json(&done(path, &[&["locate", "smoke", "--nodes", "4"][..], &world, &at].concat()));
+    assert_documented(path, &["locate"], &verified);
+    let page = std::fs::read_to_string(path.join("verified/trial.html")).expect("a page");
+    assert!(page.contains("Places that agree best") && !page.contains("B_th") && !page.contains("fill-opacity=\"-"));
+
     let at_node = ["--eye", &place, "--heading-deg", "30"];
     done(path, &["world", "view", "office-3.edgeworld", "-o", "plan.svg"]);
     done(path, &[&["world", "view", "office-3.edgeworld", "-o", "eye.svg"][..], &at_node].concat());

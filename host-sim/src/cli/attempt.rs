@@ -3,7 +3,7 @@
 use super::console::{self, Format};
 use super::worlds;
 use edgeloc_sim::monte_carlo::{Replay, Site, SourceEffect, TrialRecord, TruePose};
-use edgeloc_sim::report::{FloorPlan, LookExplanation, TrialFacts, to_svg_file, trial_page};
+use edgeloc_sim::report::{FloorPlan, LookExplanation, TrialFacts, answer_words, to_svg_file, trial_page};
 use edgeloc_sim::scenario::Setting;
 use miette::{IntoDiagnostic, Result, WrapErr};
 use serde::Serialize;
@@ -17,7 +17,9 @@ true_heading_deg, nearest_node, second_nearest_node, nearest_node_distance_m, ou
 from the true position to it, pose_error_m, heading_error_deg and probability of an answered pose, is_success, looks, \
 scene_segments, scored_nodes, leader_score, runner_up_score, truth_score, map_bytes, \
 map_segments, message of an error); parameters, by their keys in a scenario, as they were applied; looks (look, heading_deg, compass_deg told \
-to the localiser, seen_segments, used_segments, decision in words, and nodes, of each its score, \
+to the localiser, seen_segments, used_segments, decision in words; pose answered (x_m, y_m, heading_deg, covariance \
+of x, y and heading in m, m, rad) and its probability, if the localiser gives them, or rivals (node, x_m, y_m, probability), the \
+places between which it can't tell; and nodes, of each its score, \
 was_candidate and is_candidate: before and after the look); effects, of each look what each uncertainty source did to both \
 images (source, magnitude, unit, features, changed_features, removed_features, added_features, pieces and length_px before and after, rms_shift_px, \
 greatest_shift_px, flipped_pieces, unmatched_features); page, with every intermediate as a picture; drawings, the files";
@@ -50,7 +52,8 @@ impl Attempt {
     ) -> Result<Self> {
         let mut looks = Vec::new();
         let replay = Replay::new(site, setting, trial, start).into_diagnostic()?;
-        let record = replay.run(|event| looks.push(LookExplanation::new(looks.len() + 1, event)));
+        let config = setting.localizer_config();
+        let record = replay.run(|event| looks.push(LookExplanation::new(looks.len() + 1, event, &config)));
         let record = record.into_diagnostic()?;
         let plan = FloorPlan::new(Some(&site.world), Some(&worlds::free_cells(&site.free_space)), &site.nodes);
         std::fs::create_dir_all(folder)
@@ -69,7 +72,7 @@ impl Attempt {
         let facts = TrialFacts {
             record: &record,
             parameters: &parameters,
-            config: setting.localizer_config(),
+            config,
             map: replay.map().into_diagnostic()?,
             plan: &plan,
             looks: &looks,
@@ -99,10 +102,7 @@ impl Attempt {
         for look in &self.looks {
             console::print(&look.to_text(record))?;
         }
-        let answer = match (record.answered_node, record.answer_distance_m) {
-            (Some(node), Some(distance)) => format!("node {node}, {distance:.2} m from the truth"),
-            _ => "no answer".to_owned(),
-        };
+        let answer = answer_words(record);
         let verdict = if record.is_success { "right" } else { "wrong" };
         let looks = if record.looks == 1 { "look" } else { "looks" };
         console::print(&format!("answer after {} {looks}: {answer}: {verdict}", record.looks))?;

@@ -5,8 +5,8 @@
 use super::FloorPlan;
 use super::drawing::{drawing, line, text, tidy, tooltip};
 use crate::monte_carlo::{LookEvent, TrialRecord};
-use edgeloc::geometry::{Heading, PinholeCamera, Point2, Polarity, Segment2};
-use edgeloc::localize::Decision;
+use edgeloc::geometry::{Angle, Heading, PinholeCamera, Point2, Polarity, Segment2};
+use edgeloc::localize::{Decision, LocalizerConfig, UnknownReason};
 use serde::Serialize;
 use std::fmt::Write;
 use svg::Node;
@@ -32,12 +32,21 @@ pub struct LookExplanation {
     pub compass_deg: f64,
     /// Segments that the camera saw.
     pub seen_segments: usize,
-    /// Segments that entered the matching.
+    /// Segments that entered the matching or the verification.
     pub used_segments: usize,
     /// Every node's accumulated score and standing, by identity.
     pub nodes: Vec<NodeStanding>,
     /// The answer, in words.
     pub decision: String,
+    /// Whether the verifying localiser looked: there are no candidates then, and no node leaves.
+    #[serde(skip)]
+    pub is_verifying: bool,
+    /// The pose answered, if any.
+    pub pose: Option<AnsweredPose>,
+    /// Probability that the answer is right as the localiser has it, if it states one.
+    pub probability: Option<f32>,
+    /// The places between which the localiser can't tell.
+    pub rivals: Vec<PossiblePlace>,
     /// The segments seen.
     #[serde(skip)]
     pub scene: Vec<Segment2>,
@@ -47,12 +56,42 @@ pub struct LookExplanation {
     /// What the compass told of it.
     #[serde(skip)]
     pub compass: Heading,
+    /// Standard deviation of what the compass tells.
+    #[serde(skip)]
+    pub compass_spread: Angle,
+}
+
+/// A pose answered.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct AnsweredPose {
+    /// Position in the world frame \[m\].
+    pub x_m: f32,
+    /// Position in the world frame \[m\].
+    pub y_m: f32,
+    /// Heading at the look in degrees.
+    pub heading_deg: f32,
+    /// Covariance of x, y and heading in m, m and rad.
+    pub covariance: [[f32; 3]; 3],
+}
+
+/// A place at which the robot may be.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct PossiblePlace {
+    /// The node nearest to it.
+    pub node: u32,
+    /// Position in the world frame \[m\].
+    pub x_m: f32,
+    /// Position in the world frame \[m\].
+    pub y_m: f32,
+    /// Probability that the robot is there, if it is at one of the places named.
+    pub probability: f32,
 }
 
 /// How a node stands after a look.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct NodeStanding {
-    /// Accumulated score, Bhattacharyya coefficients summed over looks.
+    /// Accumulated score, Bhattacharyya coefficients summed over looks; when verifying, the agreement of the best pose
+    /// beside the node.
     pub score: f64,
     /// Whether it was a candidate before the look.
     pub was_candidate: bool,
@@ -63,15 +102,40 @@ pub struct NodeStanding {
 impl LookExplanation {
     /// What the `look`-th look, from 1, came to.
     #[must_use]
-    pub fn new(look: usize, event: &LookEvent<'_>) -> Self {
+    pub fn new(look: usize, event: &LookEvent<'_>, config: &LocalizerConfig) -> Self {
         let scores = event.localizer.candidates().scores();
         let standing = |(node, was_candidate): (&edgeloc::localize::NodeScore, &bool)| NodeStanding {
             score: node.as_f64(),
             was_candidate: *was_candidate,
             is_candidate: node.is_candidate(),
         };
+        let (mut pose, mut probability, mut rivals) = (None, None, Vec::new());
+        match event.decision {
+            Ok(Decision::Localized(place)) => {
+                probability = place.probability;
+                pose = place.pose.map(|pose| AnsweredPose {
+                    x_m: pose.position.x,
+                    y_m: pose.position.y,
+                    heading_deg: pose.heading.angle().degrees(),
+                    covariance: pose.covariance,
+                });
+            }
+            Ok(Decision::Unknown { reason: UnknownReason::Indistinguishable(places) }) => {
+                rivals.extend(places.iter().map(|place| PossiblePlace {
+                    node: place.node.0,
+                    x_m: place.position.x,
+                    y_m: place.position.y,
+                    probability: place.probability,
+                }));
+            }
+            _ => {}
+        }
         let decision = match event.decision {
-            Ok(Decision::Localized(place)) => format!("at node {}", place.node.0),
+            Ok(Decision::Localized(place)) => {
+                let at = |pose: AnsweredPose| format!(", {:.2}, {:.2} m, {:.1}°", pose.x_m, pose.y_m, pose.heading_deg);
+                let how_sure = probability.map(|probability| format!(", probability {:.1} %", 100.0 * probability));
+                format!("at node {}{}{}", place.node.0, pose.map(at).unwrap_or_default(), how_sure.unwrap_or_default())
+            }
             Ok(Decision::LookAgain { turn }) => format!("look again after a turn of {:.0} degrees", turn.degrees()),
             Ok(Decision::Unknown { reason }) => format!("can't tell: {reason}"),
             Err(error) => format!("refused: {error}"),
@@ -84,9 +148,14 @@ impl LookExplanation {
             used_segments: event.localizer.scene_segment_count(),
             nodes: scores.iter().zip(event.was_candidate).map(standing).collect(),
             decision,
+            is_verifying: config.verification.is_some(),
+            pose,
+            probability,
+            rivals,
             scene: event.scene.to_vec(),
             heading: event.heading,
             compass: event.compass.mean,
+            compass_spread: event.compass.standard_deviation,
         }
     }
 
@@ -103,29 +172,44 @@ impl LookExplanation {
     #[must_use]
     pub fn to_text(&self, record: &TrialRecord) -> String {
         let ranking = self.ranking();
-        let left = self.nodes.iter().filter(|node| node.is_candidate).count();
         let compass = match self.compass_deg {
             told if (told - self.heading_deg).abs() < 0.05 => String::new(),
             told => format!(" (compass {told:.1})"),
         };
         let mut words = format!(
-            "look {:>2}, heading {:>6.1} degrees{compass}: {} segments seen, {} matched against {} candidates\n",
+            "look {:>2}, heading {:>6.1} degrees{compass}: {} segments seen, {} {} {} {}\n",
             self.look,
             self.heading_deg,
             self.seen_segments,
             self.used_segments,
-            ranking.len()
+            if self.is_verifying { "checked at poses beside" } else { "matched against" },
+            ranking.len(),
+            match (self.is_verifying, ranking.len()) {
+                (true, 1) => "node",
+                (true, _) => "nodes",
+                (false, 1) => "candidate",
+                (false, _) => "candidates",
+            }
         );
         for (rank, (node, standing)) in ranking.iter().enumerate() {
             let is_right = is_right(record, *node);
             if rank < NAMED_NODES || is_right {
-                let state = if standing.is_candidate { "stays" } else { "drops out" };
+                let state = match (self.is_verifying, standing.is_candidate) {
+                    (true, _) => "",
+                    (false, true) => "  stays",
+                    (false, false) => "  drops out",
+                };
                 let right = if is_right { "  <- one of the two nearest" } else { "" };
                 let _ =
-                    writeln!(words, "    {:>4}. node {node:>3}  score {:.3}  {state}{right}", rank + 1, standing.score);
+                    writeln!(words, "    {:>4}. node {node:>3}  score {:.3}{state}{right}", rank + 1, standing.score);
             }
         }
-        let _ = writeln!(words, "    {left} left -> {}", self.decision);
+        if self.is_verifying {
+            let _ = writeln!(words, "    -> {}", self.decision);
+        } else {
+            let left = self.nodes.iter().filter(|node| node.is_candidate).count();
+            let _ = writeln!(words, "    {left} left -> {}", self.decision);
+        }
         words
     }
 
@@ -137,8 +221,12 @@ impl LookExplanation {
         let (left, right, top) = (20.0, IMAGE_WIDTH_PX + 40.0, 54.0);
         let scores_top = top + image_size.1.max(plan_size.1) + 40.0;
         let title = format!("look {} at heading {:.1}°: {}", self.look, self.heading_deg, self.decision);
-        let seen = format!("{} segments seen, {} matched", self.seen_segments, self.used_segments);
-        let standings = "full: stays · red: drops out now · hollow: left before";
+        let (used, standings) = if self.is_verifying {
+            ("checked", "the darker a node, the better the best pose beside it agrees")
+        } else {
+            ("matched", "full: stays · red: drops out now · hollow: left before")
+        };
+        let seen = format!("{} segments seen, {} {used}", self.seen_segments, self.used_segments);
         drawing(WIDTH_PX, scores_top + 190.0)
             .add(text("start", (left, 26.0), title).set("class", "title"))
             .add(text("start", (left, 46.0), seen))
@@ -150,6 +238,7 @@ impl LookExplanation {
 
     fn plan_with_candidates(&self, plan: &FloorPlan, record: &TrialRecord) -> SVG {
         let mut marks = Group::new();
+        let most = self.nodes.iter().map(|node| node.score).fold(1e-9, f64::max);
         for (node, (standing, &place)) in self.nodes.iter().zip(plan.nodes()).enumerate() {
             let (x, y) = plan.to_px(place);
             let class = match (standing.was_candidate, standing.is_candidate) {
@@ -158,7 +247,17 @@ impl LookExplanation {
                 (false, false) => "node",
             };
             let label = format!("node {node}: {:.3}", standing.score);
-            marks.append(Circle::new().set("class", class).set("cx", x).set("cy", y).set("r", 8).add(tooltip(label)));
+            let mut mark = Circle::new().set("class", class).set("cx", x).set("cy", y).set("r", 8).add(tooltip(label));
+            if self.is_verifying {
+                mark = mark.set("fill-opacity", tidy((standing.score / most).clamp(0.0, 1.0)));
+            }
+            marks.append(mark);
+        }
+        if let Some(pose) = &self.pose {
+            let (x, y) = plan.to_px(Point2::new(pose.x_m, pose.y_m));
+            let label = format!("answered: {:.2}, {:.2} m", pose.x_m, pose.y_m);
+            let mark = Circle::new().set("class", "answer").set("cx", x).set("cy", y).set("r", 11);
+            marks.append(mark.add(tooltip(label)));
         }
         for node in [record.nearest_node, record.second_nearest_node] {
             if let Some(&place) = plan.nodes().get(node as usize) {
@@ -174,8 +273,11 @@ impl LookExplanation {
         let most = self.nodes.iter().map(|node| node.score).fold(1e-9, f64::max);
         let slot = width / self.nodes.len().max(1) as f64;
         let bottom = top + height;
-        let title =
-            "accumulated score of each node: green = one of the two nearest, blue = candidate, grey = left before";
+        let title = if self.is_verifying {
+            "agreement of the best pose beside each node, over all looks: green = one of the two nearest"
+        } else {
+            "accumulated score of each node: green = one of the two nearest, blue = candidate, grey = left before"
+        };
         let mut bars = Group::new().add(text("start", (left, top - 10.0), title));
         for (node, standing) in self.nodes.iter().enumerate() {
             let class = match (is_right(record, node), standing.was_candidate, standing.is_candidate) {
@@ -249,6 +351,19 @@ fn placed(drawing: SVG, (x, y): (f64, f64), (width, height): (f64, f64)) -> SVG 
     drawing.set("x", tidy(x)).set("y", tidy(y)).set("width", tidy(width)).set("height", tidy(height))
 }
 
+/// How a trial came out, in words.
+#[must_use]
+pub fn answer_words(record: &TrialRecord) -> String {
+    let mut words = match (record.answered_node, record.answer_distance_m) {
+        (Some(node), Some(distance)) => format!("node {node}, {distance:.2} m from the truth"),
+        _ => "no answer".to_owned(),
+    };
+    if let (Some(error_m), Some(error_deg)) = (record.pose_error_m, record.heading_error_deg) {
+        let _ = write!(words, ", its pose {error_m:.2} m and {:.1}° off", error_deg.abs());
+    }
+    words
+}
+
 pub(super) fn is_right(record: &TrialRecord, node: usize) -> bool {
     [record.nearest_node as usize, record.second_nearest_node as usize].contains(&node)
 }
@@ -260,23 +375,26 @@ mod tests {
 
     fn look() -> LookExplanation {
         let standing = |score, was_candidate, is_candidate| NodeStanding { score, was_candidate, is_candidate };
-        LookExplanation {
-            look: 2,
-            heading_deg: 30.0,
-            compass_deg: 30.0,
-            seen_segments: 140,
-            used_segments: 90,
-            nodes: vec![
-                standing(0.4, false, false),
-                standing(1.1, true, true),
-                standing(1.3, true, true),
-                standing(0.9, true, false),
-            ],
-            decision: "look again after a turn of 30 degrees".to_owned(),
-            scene: vec![],
-            heading: Heading::default(),
-            compass: Heading::default(),
-        }
+        let nodes = vec![
+            standing(0.4, false, false),
+            standing(1.1, true, true),
+            standing(1.3, true, true),
+            standing(0.9, true, false),
+        ];
+        let decision = "look again after a turn of 30 degrees".to_owned();
+        let of_posts = LookExplanation { look: 2, heading_deg: 30.0, compass_deg: 30.0, ..sample::look_at_posts() };
+        LookExplanation { seen_segments: 140, used_segments: 90, nodes, decision, scene: Vec::new(), ..of_posts }
+    }
+
+    #[test]
+    fn the_words_of_the_verifying_localiser_tell_of_no_candidates() {
+        let record = &sample::run().results.records[0];
+        let words = LookExplanation { is_verifying: true, ..look() }.to_text(record);
+        assert!(
+            words.contains("90 checked at poses beside 3 nodes") && words.contains("\n    -> look again"),
+            "{words}"
+        );
+        assert!(!words.contains("candidate") && !words.contains("stays") && !words.contains("drops out"), "{words}");
     }
 
     #[test]

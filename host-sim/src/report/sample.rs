@@ -2,10 +2,12 @@
 
 use crate::monte_carlo::{Outcome, TrialRecord};
 use crate::random::Stream;
-use crate::report::{FreeCells, Manifest, RunResults, RunTimings, Summary, WorldFacts};
+use crate::report::{FreeCells, LookExplanation, Manifest, RunResults, RunTimings, Summary, WorldFacts};
 use crate::scenario::{Scenario, Start};
 use crate::world::WireframeWorld;
-use edgeloc::geometry::{Point2, Point3, Polarity, Segment3};
+use edgeloc::database::{self, NodeId, NodeModel, TopologicalDatabase};
+use edgeloc::geometry::{Angle, Heading, Point2, Point3, Polarity, Segment3, StereoRig};
+use edgeloc::localize::predict_view;
 use std::time::Duration;
 
 /// Everything a report needs.
@@ -105,4 +107,47 @@ fn world() -> WireframeWorld {
         }
     }
     WireframeWorld { name: "hall".to_owned(), origin: "made up".to_owned(), edges, ..WireframeWorld::default() }
+}
+
+/// A map of two places four metres apart, each with posts and boards of its own in front of it, towards +x.
+pub(crate) fn map_of_posts() -> Vec<u8> {
+    let post = |x: f32, y: f32, low: f32, high: f32| Segment3 {
+        start: Point3::new(x, y, low),
+        end: Point3::new(x, y + 0.1, high),
+        polarity: Polarity::LeftBrighter,
+    };
+    let first = [(2.0, 0.5), (2.5, -0.4), (4.0, 0.2), (3.0, 1.1), (2.2, -0.9)].map(|(x, y)| post(x, y, -0.5, 0.8));
+    let second = [(1.8, -0.7), (3.5, 0.6), (2.6, 0.1), (4.4, -1.4), (3.1, 1.3)].map(|(x, y)| post(x, y, -0.9, 0.4));
+    let positions = [Point2::new(1.0, 2.0), Point2::new(5.0, 2.0)];
+    let nodes = [(positions[0], &first), (positions[1], &second)];
+    let nodes = nodes.map(|(position, segments)| NodeModel { position, segments });
+    let mut map = vec![0; 4096];
+    let length = database::write(&StereoRig::reference(), 12, &nodes, &mut map).expect("room for the map");
+    map.truncate(length);
+    map
+}
+
+/// The second place of [`map_of_posts`] as it is seen from there, towards +x.
+pub(crate) fn look_at_posts() -> LookExplanation {
+    let map = map_of_posts();
+    let map = TopologicalDatabase::open(&map).expect("a map");
+    let node = map.node(NodeId(1)).expect("a second node");
+    let scene: Vec<_> = predict_view(&node, map.rig(), Heading::default()).collect();
+    LookExplanation {
+        look: 1,
+        heading_deg: 0.0,
+        compass_deg: 0.0,
+        seen_segments: scene.len(),
+        used_segments: scene.len(),
+        nodes: Vec::new(),
+        decision: "look again after a turn of 60 degrees".to_owned(),
+        is_verifying: false,
+        pose: None,
+        probability: None,
+        rivals: Vec::new(),
+        scene,
+        heading: Heading::default(),
+        compass: Heading::default(),
+        compass_spread: Angle::default(),
+    }
 }

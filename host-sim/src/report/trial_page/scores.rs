@@ -28,18 +28,20 @@ pub(super) fn score_strips(looks: &[LookExplanation], record: &TrialRecord) -> S
         strips.append(text("end", (LABELS_PX - 8.0, top + 15.0), format!("look {}", look.look)));
         for (node, standing) in look.nodes.iter().enumerate() {
             let state = match (standing.was_candidate, standing.is_candidate) {
-                (_, true) => "a candidate",
-                (true, false) => "drops out",
-                (false, false) => "left before",
+                _ if look.is_verifying => "",
+                (_, true) => ", a candidate",
+                (true, false) => ", drops out",
+                (false, false) => ", left before",
             };
+            let is_framed = standing.is_candidate && !look.is_verifying;
             let field = Rectangle::new()
-                .set("class", if standing.is_candidate { "heat framed" } else { "heat" })
+                .set("class", if is_framed { "heat framed" } else { "heat" })
                 .set("x", tidy(LABELS_PX + (node as f64 + 0.08) * slot))
                 .set("width", tidy(0.84 * slot))
                 .set("y", top)
                 .set("height", STRIP_PX)
-                .set("fill-opacity", tidy(standing.score / most));
-            strips.append(field.add(tooltip(format!("node {node}: {:.3}, {state}", standing.score))));
+                .set("fill-opacity", tidy((standing.score / most).clamp(0.0, 1.0)));
+            strips.append(field.add(tooltip(format!("node {node}: {:.3}{state}", standing.score))));
         }
     }
     for node in (0..node_count).filter(|node| is_right(record, *node)) {
