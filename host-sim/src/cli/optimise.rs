@@ -131,7 +131,7 @@ impl Optimise {
         let (settings, finalists) = (points.len(), usize::from(self.finalists));
         let schedule = Schedule { settings, finalists, trials_total: self.trials_total };
         let folder = self.folder()?;
-        let world = worlds::open(&base.world)?;
+        let world = worlds::open(&base)?;
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(self.threads.map_or(0, usize::from))
             .build()

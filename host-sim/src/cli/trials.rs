@@ -35,7 +35,7 @@ impl Default for RunArguments {
 /// Makes the scenario's world ready for learning and trials.
 pub(super) fn prepare(scenario: &Scenario) -> Result<Site> {
     let _wheel = progress::wheel("looking around in the world");
-    let world = worlds::open(&scenario.world)?;
+    let world = worlds::open(scenario)?;
     let site = Site::prepare(world, scenario).into_diagnostic()?;
     info!("{}", site.free_space.describe());
     Ok(site)
@@ -63,7 +63,7 @@ pub(super) fn run_shard(
     let (started, start) = (jiff::Timestamp::now(), Instant::now());
     let trials = shard.map(|shard| shard.trials(&scenario)).transpose().into_diagnostic()?;
     let pool = thread_pool(arguments.threads)?;
-    let sites = pool.install(|| prepare_rows(worlds::open(&scenario.world)?, &scenario))?;
+    let sites = pool.install(|| prepare_rows(worlds::open(&scenario)?, &scenario))?;
     let world = WorldFacts::new(&sites.all()[0].world, &scenario.world);
     let trials = trials.unwrap_or(0..sites.trials());
     let count = monte_carlo::count_trials(sites.settings(), &trials);
@@ -185,7 +185,7 @@ pub(super) fn behind_link(path: &Path) -> PathBuf {
 
 /// The world that a run took place in, if it is still the same.
 pub(super) fn unchanged_world(scenario: &Scenario, manifest: &Manifest) -> Result<WireframeWorld> {
-    let world = worlds::open(&scenario.world)?;
+    let world = worlds::open(scenario)?;
     let (now, then) = (WorldFacts::new(&world, &scenario.world), &manifest.world);
     if now.checksum != then.checksum {
         return Err(miette!(
