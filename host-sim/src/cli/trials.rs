@@ -83,18 +83,10 @@ pub(super) fn run_shard(
 pub(super) fn resume(path: &Path, threads: Option<u16>) -> Result<(RunFolder, RunResults)> {
     let start = Instant::now();
     let (folder, manifest, scenario) = RunFolder::open_unfinished(&behind_link(path))?;
-    let same = Manifest::new(&scenario, manifest.world.clone(), 0, None, 0, jiff::Timestamp::now());
-    if !manifest.is_of_same_program(&same) {
-        let commit = |manifest: &Manifest| manifest.git_commit.clone().unwrap_or_else(|| "unknown".to_owned());
-        return Err(miette!(
-            help = "resume it with the program that began it, or run its scenario.toml anew",
-            "the run was begun by edgeloc {} (commit {}), this is {} (commit {})",
-            manifest.program_version,
-            commit(&manifest),
-            same.program_version,
-            commit(&same)
-        ));
-    }
+    check_same_program(
+        &manifest,
+        &Manifest::new(&scenario, manifest.world.clone(), 0, None, 0, jiff::Timestamp::now()),
+    )?;
     let trials = manifest.shard.map(|shard| shard.trials(&scenario)).transpose().into_diagnostic()?;
     let world = unchanged_world(&scenario, &manifest)?;
     let pool = thread_pool(threads)?;
@@ -184,14 +176,35 @@ pub(super) fn behind_link(path: &Path) -> PathBuf {
 }
 
 /// The world that a run took place in, if it is still the same.
+/// Refuses to go on with what another version of the program began.
+pub(super) fn check_same_program(begun: &Manifest, now: &Manifest) -> Result<()> {
+    if begun.is_of_same_program(now) {
+        return Ok(());
+    }
+    let commit = |manifest: &Manifest| manifest.git_commit.clone().unwrap_or_else(|| "unknown".to_owned());
+    Err(miette!(
+        help = "resume it with the program that began it, or begin it anew",
+        "the run was begun by edgeloc {} (commit {}), this is {} (commit {})",
+        begun.program_version,
+        commit(begun),
+        now.program_version,
+        commit(now)
+    ))
+}
+
 pub(super) fn unchanged_world(scenario: &Scenario, manifest: &Manifest) -> Result<WireframeWorld> {
     let world = worlds::open(scenario)?;
-    let (now, then) = (WorldFacts::new(&world, &scenario.world), &manifest.world);
+    check_same_world(&manifest.world, &WorldFacts::new(&world, &scenario.world))?;
+    Ok(world)
+}
+
+/// Refuses a world, or viewpoints in it, that changed since a run.
+pub(super) fn check_same_world(then: &WorldFacts, now: &WorldFacts) -> Result<()> {
     if now.checksum != then.checksum {
         return Err(miette!(
             help = "bring back the world file of the run, or use the version of the program that made it",
             "the world {:?} has changed since the run: its checksum was {}, it is {}",
-            world.name,
+            now.name,
             then.checksum,
             now.checksum
         ));
@@ -204,7 +217,7 @@ pub(super) fn unchanged_world(scenario: &Scenario, manifest: &Manifest) -> Resul
             then.checksum,
             now.checksum
         )),
-        _ => Ok(world),
+        _ => Ok(()),
     }
 }
 
