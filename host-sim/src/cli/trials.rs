@@ -109,7 +109,6 @@ struct Running {
 impl Running {
     /// Runs what the journal lacks and writes the results; leaves a folder to resume when that is interrupted.
     fn finish(self) -> Result<(RunFolder, RunResults)> {
-        let start = Instant::now();
         let (journal, done) = Journal::open(self.folder.path())?;
         let known: HashSet<(usize, u32)> = done.iter().map(|trial| (trial.row, trial.record.trial)).collect();
         let progress = TrialProgress::going_on(self.manifest.trials, &done);
@@ -128,6 +127,7 @@ impl Running {
         let run = self.pool.install(|| monte_carlo::run_part(&self.sites, &part, &on_trial));
         drop(progress);
         let closed = journal.close();
+        let trials_time = journal.elapsed();
         let ended = ended.into_inner().unwrap_or_else(PoisonError::into_inner);
         let folder = name(self.folder.path());
         let is_complete = run.is_ok() && closed.is_ok() && ended.len() == self.manifest.trials;
@@ -142,7 +142,7 @@ impl Running {
                 "the run was interrupted"
             ));
         }
-        self.write(RunOutcome::of(ended), start.elapsed())
+        self.write(RunOutcome::of(ended), trials_time)
     }
 
     fn write(self, outcome: RunOutcome, trials_time: Duration) -> Result<(RunFolder, RunResults)> {
