@@ -127,8 +127,7 @@ impl Optimise {
     pub(super) fn execute(self) -> Result<()> {
         let start = Instant::now();
         let given = self.base()?;
-        let Setting { row, scenario } = find_setting(&given, self.row.as_deref())?;
-        let base = Scenario { rows: given.rows, trials: given.trials, ..scenario };
+        let Setting { row, scenario: base } = find_setting(&given, self.row.as_deref())?;
         let axes = if self.axes.is_empty() { Axis::defaults() } else { self.axes.clone() };
         let points = draw_points(&axes, usize::from(self.settings), base.seed);
         let (settings, finalists) = (points.len(), usize::from(self.finalists));
@@ -245,10 +244,10 @@ impl Stages<'_> {
             Stage::Rung(rung) => (format!("rung-{}.json", rung + 1), format!("rung {}", rung + 1)),
             Stage::Confirmation => ("confirmation.json".to_owned(), "confirmation".to_owned()),
         };
+        let text = scenario.to_toml();
         let count = settings.len() * trials as usize;
         let (facts, started) = (WorldFacts::new(self.world, &scenario.world), jiff::Timestamp::now());
         let manifest = Manifest::new(&scenario, facts, self.pool.current_num_threads(), None, count, started);
-        let text = scenario.to_toml();
         if let Ok(known) = std::fs::read(self.folder.join(&file)) {
             let known: StageFile = serde_json::from_slice(&known)
                 .map_err(|error| miette!("{file} is damaged or of another version: {error}"))?;
@@ -258,8 +257,8 @@ impl Stages<'_> {
                     help = "resume with the arguments of the interrupted search, or begin a new one without --resume",
                     "{file} is of another search"
                 ));
-            trials::check_same_world(&known.manifest.world, &manifest.world)?;
             }
+            trials::check_same_world(&known.manifest.world, &manifest.world)?;
             return Ok(known.samples);
         }
         console::remark(&format!("{what}: {} settings, {trials} trials each", settings.len()));
