@@ -1,4 +1,5 @@
-//! Running a scenario and writing its folder: what `run` and `demo` share.
+//! Running a scenario and writing its folder: what `run`, `demo` and `figures` share; and making a world ready, as
+//! `learn` and `locate` do too.
 
 use super::progress::{self, TrialProgress};
 use super::{console, interruption, worlds};
@@ -126,8 +127,8 @@ impl Running {
         interruption::listen();
         let run = self.pool.install(|| monte_carlo::run_part(&self.sites, &part, &on_trial));
         drop(progress);
-        let closed = journal.close();
         let trials_time = journal.elapsed();
+        let closed = journal.close();
         let ended = ended.into_inner().unwrap_or_else(PoisonError::into_inner);
         let folder = name(self.folder.path());
         let is_complete = run.is_ok() && closed.is_ok() && ended.len() == self.manifest.trials;
@@ -175,7 +176,6 @@ pub(super) fn behind_link(path: &Path) -> PathBuf {
     path.read_link().map_or_else(|_| path.to_owned(), |target| path.with_file_name(target))
 }
 
-/// The world that a run took place in, if it is still the same.
 /// Refuses to go on with what another version of the program began.
 pub(super) fn check_same_program(begun: &Manifest, now: &Manifest) -> Result<()> {
     if begun.is_of_same_program(now) {
@@ -192,6 +192,7 @@ pub(super) fn check_same_program(begun: &Manifest, now: &Manifest) -> Result<()>
     ))
 }
 
+/// The world that a run took place in, if it is still the same.
 pub(super) fn unchanged_world(scenario: &Scenario, manifest: &Manifest) -> Result<WireframeWorld> {
     let world = worlds::open(scenario)?;
     check_same_world(&manifest.world, &WorldFacts::new(&world, &scenario.world))?;
