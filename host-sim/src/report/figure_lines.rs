@@ -3,7 +3,7 @@
 use super::RunResults;
 use crate::monte_carlo::{SuccessRate, difference_interval, paired_difference_interval};
 use crate::scenario::{IllegalValue, Start};
-use crate::sweep::{Against, Comparison, PaperClaim, compare_with_default, figure_and_setting, paper_claim};
+use crate::sweep::{Against, DefaultComparison, PaperClaim, compare_with_default, figure_and_setting, paper_claim};
 use serde::Serialize;
 
 /// One setting of a figure. Rates and differences are fractions.
@@ -133,7 +133,7 @@ pub fn figure_lines(results: &RunResults) -> Result<Vec<FigureLine>, IllegalValu
     Ok(lines.collect())
 }
 
-fn fill_comparison(line: &mut FigureLine, comparison: &Comparison) {
+fn fill_comparison(line: &mut FigureLine, comparison: &DefaultComparison) {
     let (difference, (low, high)) = match comparison.against {
         Against::IsDefault => {
             line.test = TestKind::Default;
