@@ -265,7 +265,8 @@ fn symlink(target: &Path, link: &Path) -> std::io::Result<()> {
     fs::write(link, target.display().to_string())
 }
 
-fn to_csv<T: Serialize>(lines: impl IntoIterator<Item = T>) -> Result<Vec<u8>, csv::Error> {
+/// Lines as CSV, the columns named as their fields.
+pub(super) fn to_csv<T: Serialize>(lines: impl IntoIterator<Item = T>) -> Result<Vec<u8>, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for line in lines {
         writer.serialize(line)?;
