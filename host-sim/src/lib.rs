@@ -9,7 +9,7 @@
 //! outcomes -> statistics -> sweep -> report
 //! ```
 //!
-//! Arrows between modules point one way: `random < world < camera < uncertainty < learning < scenario < monte_carlo <
+//! Arrows between modules point one way: `random, whole_file < world < camera < uncertainty < learning < scenario < monte_carlo <
 //! sweep < report < cli`.
 
 pub mod camera;
@@ -20,4 +20,5 @@ pub mod report;
 pub mod scenario;
 pub mod sweep;
 pub mod uncertainty;
+pub mod whole_file;
 pub mod world;

@@ -54,7 +54,9 @@ fn the_help_of_every_verb_has_an_example() {
         &["world", "view"],
         &["world", "visibility"],
         &["world", "edit"],
+        &["explore"],
         &["learn"],
+        &["calibrate"],
         &["map"],
         &["map", "info"],
         &["locate"],
@@ -215,6 +217,7 @@ fn every_uncertainty_source_is_listed_as_the_scenario_sets_it() {
         };
         let magnitude = if key == "edge_detection_loss" { 0.25.into() } else { source["default"]["magnitude"].clone() };
         assert_eq!(set("magnitude"), Some(magnitude), "{key}");
+        assert_eq!(source["acts_in"] == "calibration", key.starts_with("corner_"), "{key}");
         let is_on = key == "polarity_flips" || source["default"]["enabled"] == true;
         assert_eq!(set("enabled"), Some(is_on.into()), "{key}");
     }
@@ -228,6 +231,51 @@ fn a_mesh_is_imported_and_every_field_of_the_account_is_told() {
     let imported = json(&done(folder.path(), &["world", "import", "tent.obj", "--format", "json"]));
     assert_eq!(imported["world"]["edges"], 6);
     assert_documented(folder.path(), &["world", "import"], &imported);
+}
+
+/// Makes `room.edgeworld`, 4 m x 3 m: a world small enough for a debug build.
+fn import_room(path: &Path) {
+    let corners: String =
+        (0..8).map(|c| format!("v {} {} {}\n", c % 2 * 4, c / 2 % 2 * 3, 2.5 * f64::from(c / 4))).collect();
+    let faces = "f 1 2 4 3\nf 5 6 8 7\nf 1 2 6 5\nf 3 4 8 7\nf 1 3 7 5\nf 2 4 8 6\n";
+    std::fs::write(path.join("room.obj"), corners + faces).expect("written");
+    done(path, &["world", "import", "room.obj"]);
+}
+
+#[test]
+fn a_room_is_explored_from_where_the_robot_is_put_down() {
+    let folder = folder();
+    let path = folder.path();
+    import_room(path);
+    let ask = ["explore", "smoke", "--world", "room.edgeworld", "--nodes", "3", "--start", "1.1,0.9"];
+    let explored = json(&done(path, &[&ask[..], &["--format", "json"]].concat()));
+    assert_documented(path, &["explore"], &explored);
+    assert_eq!((&explored["ending"], &explored["collisions"]), (&"closed_room".into(), &0.into()), "{explored}");
+    let start = [("x_m", 1.1), ("y_m", 0.9)].map(|(axis, asked)| explored["start"][axis].as_f64().map(|m| m - asked));
+    assert!(start.iter().all(|off_m| off_m.is_some_and(|off_m| off_m.abs() < 0.1)), "{explored}");
+    assert_eq!(explored["nodes"].as_array().map(Vec::len), Some(3));
+    let drawing = std::fs::read_to_string(path.join(explored["drawing"].as_str().expect("a path"))).expect("a drawing");
+    assert!(drawing.starts_with("<svg") && !drawing.contains("NaN"));
+    assert!(done(path, &[&ask[..], &["--force"]].concat()).contains("a closed room"));
+    let in_the_wall = ["explore", "smoke", "--world", "room.edgeworld", "--start", "-9,0", "--out", "other.svg"];
+    failed(path, &in_the_wall, 1);
+}
+
+#[test]
+fn what_is_visible_is_told_and_serves_an_eye_of_its_own_height_alone() {
+    let folder = folder();
+    let path = folder.path();
+    import_room(path);
+    let ask = ["world", "visibility", "room.edgeworld", "--viewpoints", "3", "--camera-height-m", "1.25"];
+    let told = json(&done(path, &[&ask[..], &["--format", "json"]].concat()));
+    assert_documented(path, &["world", "visibility"], &told);
+    assert_eq!((&told["viewpoints"], &told["edges"]), (&3.into(), &12.into()));
+    let run = [&["run"][..], &QUICK, &["--world", "room.edgeworld", "--set", "world.visibility=room.views"]].concat();
+    let refusal = failed(path, &run, 1);
+    for part in ["room.views", "taken 1.25 m", "stands 1 m", "--camera-height-m 1"] {
+        assert!(refusal.contains(part), "{part:?} is not in {refusal}");
+    }
+    done(path, &[&run[..], &["--set", "rig.camera_height_m=1.25"]].concat());
 }
 
 #[test]
@@ -361,6 +409,9 @@ fn a_study_gives_its_figures_and_gives_them_again() {
     assert_eq!(std::fs::read_to_string(run.join("figures.csv")).expect("a table"), csv);
     let page = std::fs::read_to_string(run.join("figures.html")).expect("a page");
     assert!(!page.contains("<script") && !page.contains("src="));
+    for ignored in [["--trials", "9"], ["--set", "seed=2"], ["--threads", "1"]] {
+        failed(path, &[&["figures", "--from", "runs/latest"][..], &ignored].concat(), 2);
+    }
 }
 
 #[test]
@@ -391,10 +442,24 @@ fn a_search_repeats_resumes_and_gives_a_preset_that_runs() {
     assert_eq!(decided(&search(&["--resume", interrupted])), decided(&first));
     let other = failed(path, &[&ask[..], &axes, &["--seed", "5", "--resume", interrupted]].concat(), 1);
     assert!(other.contains("another search"), "{other}");
+    let rung = path.join(interrupted).join("rung-1.json");
+    let kept = std::fs::read_to_string(&rung).expect("a stage");
+    for (fact, refusal) in
+        [("program_version", "was begun by edgeloc 0"), ("world/checksum", "has changed since the run")]
+    {
+        let mut changed = json(&kept);
+        *changed.pointer_mut(&format!("/manifest/{fact}")).expect("a fact") = "0".into();
+        std::fs::write(&rung, changed.to_string()).expect("written");
+        let told = failed(path, &[&ask[..], &axes, &["--resume", interrupted]].concat(), 1);
+        // The place where a long line breaks is the terminal's.
+        let words = told.split_whitespace().filter(|word| *word != "│").collect::<Vec<_>>().join(" ");
+        assert!(words.contains(refusal), "{told}");
+    }
 
     let preset = first["preset"].as_str().expect("a path");
     let whole = done(path, &["run", preset, "--print-config"]);
     assert!(whole.contains("name = \"optimised\"") && whole.contains("distance_bins"), "{whole}");
+    assert_eq!(whole.matches("[[rows]]").count(), 1, "the row that was searched: {whole}");
     for file in ["settings.csv", "front-time.svg", "front-map.svg", "optimise.html"] {
         assert!(path.join(interrupted).join(file).is_file(), "{file}");
     }
@@ -440,8 +505,25 @@ fn shards_merge_into_the_whole_run_and_wrong_folders_are_named() {
     assert!(doubled.contains("1/3 is there twice"), "{doubled}");
     let foreign = failed(path, &["merge", parts[0], whole["folder"].as_str().expect("a path")], 1);
     assert!(foreign.contains("a whole run, not a shard"), "{foreign}");
+    let part = failed(path, &["figures", "--from", parts[0]], 1);
+    assert!(part.contains("holds shard 1/3 of a study") && part.contains("edgeloc merge"), "{part}");
     let too_many = failed(path, &[&["run"][..], &QUICK, &["--shard", "1/9"]].concat(), 1);
     assert!(too_many.contains("too few for 9 shards"), "{too_many}");
+}
+
+#[test]
+fn shards_made_in_different_folders_merge() {
+    let folder = folder();
+    let path = folder.path();
+    import_room(path);
+    for (machine, shard) in [("one", "1/2"), ("two", "2/2")] {
+        let here = path.join(machine);
+        std::fs::create_dir(&here).expect("a folder");
+        std::fs::copy(path.join("room.edgeworld"), here.join("room.edgeworld")).expect("a copy");
+        done(&here, &[&["run"][..], &QUICK, &["--world", "room.edgeworld", "--shard", shard]].concat());
+    }
+    let merged = json(&done(path, &["merge", "one/runs/latest", "two/runs/latest", "--format", "json"]));
+    assert_eq!(merged["summary"]["rows"][0]["trials"], 3);
 }
 
 #[cfg(unix)]

@@ -109,7 +109,7 @@ impl Calibrate {
 
 /// The scenario's robot calibrates itself.
 fn simulated(scenario: &Scenario, rig: &StereoRig) -> Result<Found> {
-    let world = worlds::open(&scenario.world)?;
+    let world = worlds::open(scenario)?;
     let occluders = Occluders::new(&world.surfaces);
     let free_space = FreeSpace::of(&world, &FreeSpaceOptions::default()).into_diagnostic()?;
     let bench = CalibrationBench::observe(rig, &world, &occluders, &free_space, scenario.seed);

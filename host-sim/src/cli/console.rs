@@ -2,6 +2,7 @@
 
 use clap::ValueEnum;
 use comfy_table::{ContentArrangement, Table, presets};
+use edgeloc_sim::whole_file;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use serde::Serialize;
 use std::io::{ErrorKind, Write};
@@ -71,10 +72,5 @@ pub(super) fn check_overwrite(path: &Path, force: bool) -> Result<()> {
 
 /// Writes a file whole or not at all.
 pub(super) fn write_file(path: &Path, content: &[u8]) -> Result<()> {
-    let mut partial = path.as_os_str().to_owned();
-    partial.push(format!(".{}.partial", std::process::id()));
-    std::fs::write(&partial, content)
-        .and_then(|()| std::fs::rename(&partial, path))
-        .into_diagnostic()
-        .wrap_err_with(|| format!("{} can't be written", path.display()))
+    whole_file::write(path, content).into_diagnostic().wrap_err_with(|| format!("{} can't be written", path.display()))
 }

@@ -56,7 +56,7 @@ impl Explore {
         }
         console::check_overwrite(&path, self.force)?;
         let wheel = progress::wheel("looking for free space");
-        let world = worlds::open(&scenario.world)?;
+        let world = worlds::open(&scenario)?;
         let space = self.free_space(&world)?;
         let robot = ExploringRobot::new(&world, &space, &RangeSensorOptions::default());
         let start = self.start.unwrap_or_else(|| learning::random_start(&space, scenario.seed));

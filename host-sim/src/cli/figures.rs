@@ -12,7 +12,7 @@ use edgeloc_sim::report::{
 };
 use edgeloc_sim::scenario::Scenario;
 use edgeloc_sim::sweep::{compare_with_default, figures_of, with_anywhere};
-use miette::{IntoDiagnostic, Result};
+use miette::{IntoDiagnostic, Result, miette};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -24,8 +24,23 @@ const JSON_FIELDS: &str = "\
 folder, lines = one for each row, as the columns of figures.csv (rates, their 95 % intervals and differences from the \
 default are fractions of 1): row, figure, setting, start, polarity, trials, successes, success_rate (null without trials), \
 success_rate_low, success_rate_high, mean_looks, mean_localizer_s, test (default, mcnemar, two_rates when the robot poses \
-differ, none), only_default and only_setting (trials that just one of the two got right), difference, difference_low, \
-difference_high, p, p_holm (Holm's correction over the study), paper_success_rate, paper_time_s";
+differ, none), pairs (trials shared with the default), only_default and only_setting (pairs that just one of the two got \
+right), difference, difference_low, difference_high, p, p_holm (Holm's correction over the study), paper_success_rate, paper_time_s";
+
+/// What a finished run has settled already.
+const NOT_WITH_FROM: [&str; 11] = [
+    "study",
+    "paper_scale",
+    "anywhere",
+    "world",
+    "settings",
+    "trials",
+    "nodes",
+    "seed",
+    "print_config",
+    "threads",
+    "out",
+];
 
 /// What an interrupted study has settled already.
 const NOT_WITH_RESUME: [&str; 11] =
@@ -56,7 +71,7 @@ pub(super) struct Figures {
     #[arg(long)]
     anywhere: bool,
     /// Write the figures of a finished run anew, or of shards that were merged, and run nothing.
-    #[arg(long, value_name = "RUN", conflicts_with_all = ["study", "paper_scale", "anywhere"])]
+    #[arg(long, value_name = "RUN", conflicts_with_all = NOT_WITH_FROM)]
     from: Option<PathBuf>,
     /// Go on with an interrupted study in its folder; the result is that of an uninterrupted one.
     #[arg(long, value_name = "FOLDER", conflicts_with_all = NOT_WITH_RESUME)]
@@ -80,7 +95,7 @@ struct FiguresPrinted<'f> {
 impl Figures {
     pub(super) fn execute(self) -> Result<()> {
         let (folder, results) = match (&self.from, &self.resume) {
-            (Some(run), _) => report::open(run)?,
+            (Some(run), _) => merged(run)?,
             (None, Some(run)) => trials::resume(run, self.how.threads)?,
             (None, None) => {
                 let Some(scenario) = self.scenario()? else { return Ok(()) };
@@ -114,6 +129,19 @@ impl Figures {
         let comparisons = comparisons.iter().filter(|comparison| comparison.p.is_some()).count();
         let sentence = power_sentence(0.93, u64::from(trials), USUAL_DISCORDANCE, comparisons);
         console::remark(&format!("{} settings; {sentence}", scenario.rows.len()));
+    }
+}
+
+/// A finished run that is whole.
+fn merged(run: &Path) -> Result<(RunFolder, RunResults)> {
+    let (folder, results) = report::open(run)?;
+    match results.manifest.shard {
+        Some(shard) => Err(miette!(
+            help = "put all shards together first: edgeloc merge FOLDER...",
+            "{} holds shard {shard} of a study, not the whole",
+            run.display()
+        )),
+        None => Ok((folder, results)),
     }
 }
 

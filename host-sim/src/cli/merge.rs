@@ -13,8 +13,9 @@ use std::path::PathBuf;
 /// Put the shards of a run together; the result is that of the run in one piece.
 ///
 /// Every shard must be there once, finished, and of the same scenario, world and version of the program: otherwise the
-/// folders that are missing, doubled or foreign are named and nothing is written. trials.csv, nodes.csv, summary.json and
-/// scenario.toml are byte for byte those of the whole run.
+/// folders that are missing, doubled or foreign are named and nothing is written. A world file may lie elsewhere on each
+/// machine: its checksum decides. trials.csv, nodes.csv, summary.json and scenario.toml are byte for byte those of the
+/// whole run, but for the path of a world file, which is that of the first folder given.
 #[derive(Debug, Args)]
 #[command(after_help = format!(
     "Examples:\n  edgeloc merge runs/2026-01-31-paper-shard-*\n  edgeloc merge one/runs/latest two/runs/latest --out all\n\n\

@@ -1,4 +1,4 @@
-//! The command line: one verb, one file; `world` has a folder for its four.
+//! The command line: one verb, one file; `world` has a folder for its own.
 //!
 //! Results go to standard output, progress, remarks and errors to standard error. Exit codes: 0 done, 1 failed, 2 wrong
 //! usage of the command line.

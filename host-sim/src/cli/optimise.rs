@@ -3,11 +3,12 @@
 use super::console::{self, Format};
 use super::progress;
 use super::scenario_args::find_setting;
-use super::worlds;
+use super::{trials, worlds};
 use clap::Args;
 use edgeloc_sim::monte_carlo::{self, Sites};
 use edgeloc_sim::report::{
-    Cost, RunFolder, SearchFacts, SearchLine, pareto_chart, search_csv, search_lines, search_page, to_svg_file,
+    Cost, Manifest, RunFolder, SearchFacts, SearchLine, WorldFacts, pareto_chart, search_csv, search_lines,
+    search_page, to_svg_file,
 };
 use edgeloc_sim::scenario::{Building, Row, Scenario, Setting};
 use edgeloc_sim::sweep::{
@@ -105,6 +106,8 @@ struct OptimisePrinted<'o> {
 /// A finished stage as kept for `--resume`.
 #[derive(Serialize, Deserialize)]
 struct StageFile {
+    /// Where it comes from: only the same program in the same world goes on with it.
+    manifest: Manifest,
     /// The scenario of the stage: only the very same one is taken up again.
     scenario: String,
     samples: Vec<Sample>,
@@ -124,14 +127,13 @@ impl Optimise {
     pub(super) fn execute(self) -> Result<()> {
         let start = Instant::now();
         let given = self.base()?;
-        let Setting { row, scenario } = find_setting(&given, self.row.as_deref())?;
-        let base = Scenario { rows: given.rows, trials: given.trials, ..scenario };
+        let Setting { row, scenario: base } = find_setting(&given, self.row.as_deref())?;
         let axes = if self.axes.is_empty() { Axis::defaults() } else { self.axes.clone() };
         let points = draw_points(&axes, usize::from(self.settings), base.seed);
         let (settings, finalists) = (points.len(), usize::from(self.finalists));
         let schedule = Schedule { settings, finalists, trials_total: self.trials_total };
         let folder = self.folder()?;
-        let world = worlds::open(&base.world)?;
+        let world = worlds::open(&base)?;
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(self.threads.map_or(0, usize::from))
             .build()
@@ -243,14 +245,20 @@ impl Stages<'_> {
             Stage::Confirmation => ("confirmation.json".to_owned(), "confirmation".to_owned()),
         };
         let text = scenario.to_toml();
+        let count = settings.len() * trials as usize;
+        let (facts, started) = (WorldFacts::new(self.world, &scenario.world), jiff::Timestamp::now());
+        let manifest = Manifest::new(&scenario, facts, self.pool.current_num_threads(), None, count, started);
         if let Ok(known) = std::fs::read(self.folder.join(&file)) {
-            let known: StageFile = serde_json::from_slice(&known).into_diagnostic()?;
+            let known: StageFile = serde_json::from_slice(&known)
+                .map_err(|error| miette!("{file} is damaged or of another version: {error}"))?;
+            trials::check_same_program(&known.manifest, &manifest)?;
             if known.scenario != text {
                 return Err(miette!(
                     help = "resume with the arguments of the interrupted search, or begin a new one without --resume",
                     "{file} is of another search"
                 ));
             }
+            trials::check_same_world(&known.manifest.world, &manifest.world)?;
             return Ok(known.samples);
         }
         console::remark(&format!("{what}: {} settings, {trials} trials each", settings.len()));
@@ -263,7 +271,7 @@ impl Stages<'_> {
             monte_carlo::run(&sites, &|record| progress.count(record)).into_diagnostic()
         })?;
         let samples = samples(&scenario, &outcome);
-        let kept = StageFile { scenario: text, samples };
+        let kept = StageFile { manifest: manifest.finished(), scenario: text, samples };
         console::write_file(&self.folder.join(&file), &serde_json::to_vec(&kept).into_diagnostic()?)?;
         Ok(kept.samples)
     }

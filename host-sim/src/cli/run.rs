@@ -28,7 +28,8 @@ const NOT_WITH_RESUME: [&str; 9] =
 /// The folder, runs/<date>-<scenario>, holds the manifest, the whole scenario, trials.csv (no wall times in it: the same
 /// scenario gives the same bytes), nodes.csv, summary.json, timings.json, look_times.csv and report.html.
 /// runs/latest points at the newest. While the run is under way the folder holds a journal of the trials that ended: Ctrl-C,
-/// a crash or a power cut loses no more than those under way, and --resume goes on.
+/// a crash or a power cut loses no more than those under way, and --resume goes on. The wall time of a resumed run is that
+/// before and after the interruption together.
 #[derive(Debug, Args)]
 #[command(after_help = format!("Examples:\n  edgeloc run smoke\n  edgeloc run paper --trials 900\n  \
                         edgeloc run my.toml --world small_house.edgeworld --set localizer.turn_deg=60\n  \

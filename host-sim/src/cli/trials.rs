@@ -1,4 +1,5 @@
-//! Running a scenario and writing its folder: what `run` and `demo` share.
+//! Running a scenario and writing its folder: what `run`, `demo` and `figures` share; and making a world ready, as
+//! `learn` and `locate` do too.
 
 use super::progress::{self, TrialProgress};
 use super::{console, interruption, worlds};
@@ -35,7 +36,7 @@ impl Default for RunArguments {
 /// Makes the scenario's world ready for learning and trials.
 pub(super) fn prepare(scenario: &Scenario) -> Result<Site> {
     let _wheel = progress::wheel("looking around in the world");
-    let world = worlds::open(&scenario.world)?;
+    let world = worlds::open(scenario)?;
     let site = Site::prepare(world, scenario).into_diagnostic()?;
     info!("{}", site.free_space.describe());
     Ok(site)
@@ -63,7 +64,7 @@ pub(super) fn run_shard(
     let (started, start) = (jiff::Timestamp::now(), Instant::now());
     let trials = shard.map(|shard| shard.trials(&scenario)).transpose().into_diagnostic()?;
     let pool = thread_pool(arguments.threads)?;
-    let sites = pool.install(|| prepare_rows(worlds::open(&scenario.world)?, &scenario))?;
+    let sites = pool.install(|| prepare_rows(worlds::open(&scenario)?, &scenario))?;
     let world = WorldFacts::new(&sites.all()[0].world, &scenario.world);
     let trials = trials.unwrap_or(0..sites.trials());
     let count = monte_carlo::count_trials(sites.settings(), &trials);
@@ -83,18 +84,10 @@ pub(super) fn run_shard(
 pub(super) fn resume(path: &Path, threads: Option<u16>) -> Result<(RunFolder, RunResults)> {
     let start = Instant::now();
     let (folder, manifest, scenario) = RunFolder::open_unfinished(&behind_link(path))?;
-    let same = Manifest::new(&scenario, manifest.world.clone(), 0, None, 0, jiff::Timestamp::now());
-    if !manifest.is_of_same_program(&same) {
-        let commit = |manifest: &Manifest| manifest.git_commit.clone().unwrap_or_else(|| "unknown".to_owned());
-        return Err(miette!(
-            help = "resume it with the program that began it, or run its scenario.toml anew",
-            "the run was begun by edgeloc {} (commit {}), this is {} (commit {})",
-            manifest.program_version,
-            commit(&manifest),
-            same.program_version,
-            commit(&same)
-        ));
-    }
+    check_same_program(
+        &manifest,
+        &Manifest::new(&scenario, manifest.world.clone(), 0, None, 0, jiff::Timestamp::now()),
+    )?;
     let trials = manifest.shard.map(|shard| shard.trials(&scenario)).transpose().into_diagnostic()?;
     let world = unchanged_world(&scenario, &manifest)?;
     let pool = thread_pool(threads)?;
@@ -117,7 +110,6 @@ struct Running {
 impl Running {
     /// Runs what the journal lacks and writes the results; leaves a folder to resume when that is interrupted.
     fn finish(self) -> Result<(RunFolder, RunResults)> {
-        let start = Instant::now();
         let (journal, done) = Journal::open(self.folder.path())?;
         let known: HashSet<(usize, u32)> = done.iter().map(|trial| (trial.row, trial.record.trial)).collect();
         let progress = TrialProgress::going_on(self.manifest.trials, &done);
@@ -135,6 +127,7 @@ impl Running {
         interruption::listen();
         let run = self.pool.install(|| monte_carlo::run_part(&self.sites, &part, &on_trial));
         drop(progress);
+        let trials_time = journal.elapsed();
         let closed = journal.close();
         let ended = ended.into_inner().unwrap_or_else(PoisonError::into_inner);
         let folder = name(self.folder.path());
@@ -150,7 +143,7 @@ impl Running {
                 "the run was interrupted"
             ));
         }
-        self.write(RunOutcome::of(ended), start.elapsed())
+        self.write(RunOutcome::of(ended), trials_time)
     }
 
     fn write(self, outcome: RunOutcome, trials_time: Duration) -> Result<(RunFolder, RunResults)> {
@@ -183,15 +176,36 @@ pub(super) fn behind_link(path: &Path) -> PathBuf {
     path.read_link().map_or_else(|_| path.to_owned(), |target| path.with_file_name(target))
 }
 
+/// Refuses to go on with what another version of the program began.
+pub(super) fn check_same_program(begun: &Manifest, now: &Manifest) -> Result<()> {
+    if begun.is_of_same_program(now) {
+        return Ok(());
+    }
+    let commit = |manifest: &Manifest| manifest.git_commit.clone().unwrap_or_else(|| "unknown".to_owned());
+    Err(miette!(
+        help = "resume it with the program that began it, or begin it anew",
+        "the run was begun by edgeloc {} (commit {}), this is {} (commit {})",
+        begun.program_version,
+        commit(begun),
+        now.program_version,
+        commit(now)
+    ))
+}
+
 /// The world that a run took place in, if it is still the same.
 pub(super) fn unchanged_world(scenario: &Scenario, manifest: &Manifest) -> Result<WireframeWorld> {
-    let world = worlds::open(&scenario.world)?;
-    let (now, then) = (WorldFacts::new(&world, &scenario.world), &manifest.world);
+    let world = worlds::open(scenario)?;
+    check_same_world(&manifest.world, &WorldFacts::new(&world, &scenario.world))?;
+    Ok(world)
+}
+
+/// Refuses a world, or viewpoints in it, that changed since a run.
+pub(super) fn check_same_world(then: &WorldFacts, now: &WorldFacts) -> Result<()> {
     if now.checksum != then.checksum {
         return Err(miette!(
             help = "bring back the world file of the run, or use the version of the program that made it",
             "the world {:?} has changed since the run: its checksum was {}, it is {}",
-            world.name,
+            now.name,
             then.checksum,
             now.checksum
         ));
@@ -204,7 +218,7 @@ pub(super) fn unchanged_world(scenario: &Scenario, manifest: &Manifest) -> Resul
             then.checksum,
             now.checksum
         )),
-        _ => Ok(world),
+        _ => Ok(()),
     }
 }
 

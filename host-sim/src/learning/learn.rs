@@ -106,6 +106,7 @@ mod tests {
     use crate::world::{Occluders, WireframeWorld};
     use edgeloc::database::TopologicalDatabase;
     use edgeloc::geometry::{Polarity, StereoRig};
+    use edgeloc::stereo::StereoParameters;
 
     const RIG: StereoRig = StereoRig::reference();
     const ROBOT: CalibratedRig = CalibratedRig::exact(RIG);
@@ -149,6 +150,20 @@ mod tests {
                 let found = node.segments.iter().find(is_same).expect("every edge is in the model");
                 assert_eq!(found.polarity, edge.polarity);
             }
+        }
+    }
+
+    #[test]
+    fn a_robot_whose_images_lie_far_off_learns_each_edge_all_the_same() {
+        let mut parameters = StereoParameters::ideal(&RIG);
+        for camera in [&mut parameters.left, &mut parameters.right] {
+            camera.principal_point_px[0] += 100.0;
+        }
+        let robot = CalibratedRig::believed(RIG, &parameters).expect("side by side");
+        for node in learn_nodes(&robot, &views(), &Sources::none(), 1, 0) {
+            // Sectors off the axis are a little narrower than the turn between them.
+            let (learned, edges) = (node.segments.len(), posts().edges.len());
+            assert!(learned * 100 >= edges * 95, "{learned} of {edges}");
         }
     }
 

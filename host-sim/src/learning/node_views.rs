@@ -1,24 +1,19 @@
 //! What the stereo rig sees at a node before anything goes wrong: worked out once, perturbed once for every map.
 //!
-//! Only what can reach the node's model is kept: features seen in both images that come within half the view spacing of
-//! the optical axis, plus 40 px for what the uncertainty sources may move them (15 px of lateral shift and five
-//! standard deviations of end-point error at their greatest legal magnitudes). A third of the work is spared.
+//! Features seen in both images are kept, wherever they are: a node learns only a sector of each view, but its robot's
+//! calibration error alone may move all of them by some 100 px, image noise single ones as far.
 
-use crate::camera::{StereoFeature, StereoObservation, observe};
+use crate::camera::{StereoObservation, observe};
 use crate::world::{Occluders, ViewpointVisibility, WireframeWorld};
 use edgeloc::geometry::{Angle, Heading, Point2, Point3, StereoRig};
-use edgeloc::math;
 use rayon::prelude::*;
-
-/// Farthest that the uncertainty sources move a left piece sideways, in pixels.
-const MOVE_MARGIN_PX: f32 = 40.0;
 
 /// The clean stereo observations at one node, at equally spaced headings.
 #[derive(Debug, Clone)]
 pub struct NodeViews {
     /// Where the left camera stood, in metres in the world frame.
     pub position: Point2,
-    /// One observation per view, of what can reach the model; view `i` of `n` looks towards heading `i / n` of a
+    /// One observation per view, of what both images show; view `i` of `n` looks towards heading `i / n` of a
     /// turn from +x.
     pub views: Vec<StereoObservation>,
 }
@@ -37,7 +32,7 @@ impl NodeViews {
         let mut visibility = ViewpointVisibility::new(world, occluders, eye);
         let observe_view = |view| {
             let mut observation = observe(rig, &mut visibility, view_heading(view, view_count));
-            observation.features.retain(|feature| may_reach_model(rig, feature, view_count));
+            observation.features.retain(|feature| feature.is_matchable);
             observation
         };
         Self { position, views: (0..view_count).map(observe_view).collect() }
@@ -55,20 +50,6 @@ impl NodeViews {
         let observe_one = |&position: &Point2| Self::observe(rig, world, occluders, position, view_count);
         positions.par_iter().map(observe_one).collect()
     }
-}
-
-/// Whether a clean feature may still, perturbed, give a segment in the sector of a view.
-fn may_reach_model(rig: &StereoRig, feature: &StereoFeature, view_count: u16) -> bool {
-    if !feature.is_matchable || view_count <= 2 {
-        return feature.is_matchable;
-    }
-    // A bearing shows in the left image alone: the column is c_x + f tan(bearing).
-    let sector_px = rig.camera.focal_length_px() * math::tan(half_spacing_rad(view_count)) + MOVE_MARGIN_PX;
-    let center_px = rig.camera.principal_point_px().x;
-    feature.left.iter().any(|piece| {
-        let (start, end) = (piece.start().x - center_px, piece.end().x - center_px);
-        start.max(end) > -sector_px && start.min(end) < sector_px
-    })
 }
 
 /// Half the angle between neighbouring views, in radians.

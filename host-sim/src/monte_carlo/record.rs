@@ -69,3 +69,12 @@ pub struct TrialRecord {
     /// What the localiser said when the outcome is an error.
     pub message: Option<String>,
 }
+
+impl TrialRecord {
+    /// Whether both trials put the robot down at the same pose, to the bit.
+    #[must_use]
+    pub fn has_pose_of(&self, other: &Self) -> bool {
+        let pose = |record: &Self| [record.true_x_m, record.true_y_m, record.true_heading_deg].map(f32::to_bits);
+        pose(self) == pose(other)
+    }
+}

@@ -63,11 +63,11 @@ pub fn success_interval(successes: u64, trials: u64) -> (f64, f64) {
     }
     let (n, z2) = (trials as f64, QUANTILE_975 * QUANTILE_975);
     let rate = successes.min(trials) as f64 / n;
-    let centre = (rate + z2 / (2.0 * n)) / (1.0 + z2 / n);
+    let center = (rate + z2 / (2.0 * n)) / (1.0 + z2 / n);
     let half_width = QUANTILE_975 * (rate * (1.0 - rate) / n + z2 / (4.0 * n * n)).sqrt() / (1.0 + z2 / n);
     // At 0 and 1 the bound is exact; rounding would leave it a hair off.
-    let low = if successes == 0 { 0.0 } else { centre - half_width };
-    let high = if successes >= trials { 1.0 } else { centre + half_width };
+    let low = if successes == 0 { 0.0 } else { center - half_width };
+    let high = if successes >= trials { 1.0 } else { center + half_width };
     (low, high)
 }
 

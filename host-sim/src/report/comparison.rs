@@ -92,7 +92,7 @@ impl Comparison {
         if pairs.is_empty() {
             return Err(NotPaired::NoTrials);
         }
-        if let Some((record, _)) = pairs.iter().find(|(a, b)| pose(a) != pose(b)) {
+        if let Some((record, _)) = pairs.iter().find(|(a, b)| !a.has_pose_of(b)) {
             return Err(NotPaired::Pose { trial: record.trial });
         }
         let counts = PairedCounts::of(pairs.iter().map(|(a, b)| (a.is_success, b.is_success)));
@@ -162,10 +162,6 @@ impl<'r> RunRow<'r> {
             mean_s_per_look: timings.map_or(0.0, |timings| timings.mean_s_per_look),
         }
     }
-}
-
-fn pose(record: &TrialRecord) -> [u32; 3] {
-    [record.true_x_m, record.true_y_m, record.true_heading_deg].map(f32::to_bits)
 }
 
 /// Why two rows can't be compared trial by trial.

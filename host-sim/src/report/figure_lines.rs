@@ -1,9 +1,10 @@
 //! The rows of a study as lines of a table: what `figures.csv` holds, the page shows and `--format json` prints.
 
 use super::RunResults;
+use super::run_folder::to_csv;
 use crate::monte_carlo::{SuccessRate, difference_interval, paired_difference_interval};
 use crate::scenario::{IllegalValue, Start};
-use crate::sweep::{Against, Comparison, PaperClaim, compare_with_default, figure_and_setting, paper_claim};
+use crate::sweep::{Against, DefaultComparison, PaperClaim, compare_with_default, figure_and_setting, paper_claim};
 use serde::Serialize;
 
 /// One setting of a figure. Rates and differences are fractions.
@@ -35,6 +36,8 @@ pub struct FigureLine {
     pub mean_localizer_s: f64,
     /// How it is compared with the default of its start.
     pub test: TestKind,
+    /// Trials that it shares with the default, when paired.
+    pub pairs: Option<u64>,
     /// Trials that only the default got right, when paired.
     pub only_default: Option<u64>,
     /// Trials that only this setting got right, when paired.
@@ -86,7 +89,7 @@ impl FigureLine {
     #[must_use]
     pub fn discordance(&self) -> Option<f64> {
         let discordant = self.only_default? + self.only_setting?;
-        (self.trials > 0).then(|| discordant as f64 / self.trials as f64)
+        self.pairs.filter(|&pairs| pairs > 0).map(|pairs| discordant as f64 / pairs as f64)
     }
 }
 
@@ -114,6 +117,7 @@ pub fn figure_lines(results: &RunResults) -> Result<Vec<FigureLine>, IllegalValu
             mean_looks: summary.mean_looks,
             mean_localizer_s: timings.map_or(0.0, |timings| timings.mean_s_per_look * summary.mean_looks),
             test: TestKind::None,
+            pairs: None,
             only_default: None,
             only_setting: None,
             difference: None,
@@ -133,7 +137,7 @@ pub fn figure_lines(results: &RunResults) -> Result<Vec<FigureLine>, IllegalValu
     Ok(lines.collect())
 }
 
-fn fill_comparison(line: &mut FigureLine, comparison: &Comparison) {
+fn fill_comparison(line: &mut FigureLine, comparison: &DefaultComparison) {
     let (difference, (low, high)) = match comparison.against {
         Against::IsDefault => {
             line.test = TestKind::Default;
@@ -142,6 +146,7 @@ fn fill_comparison(line: &mut FigureLine, comparison: &Comparison) {
         Against::NoDefault => return,
         Against::Paired(counts) => {
             line.test = TestKind::Mcnemar;
+            line.pairs = Some(counts.pairs());
             (line.only_default, line.only_setting) = (Some(counts.only_a), Some(counts.only_b));
             (counts.difference(), paired_difference_interval(&counts))
         }
@@ -160,9 +165,29 @@ fn fill_comparison(line: &mut FigureLine, comparison: &Comparison) {
 /// # Errors
 /// When a line can't be written.
 pub fn figures_csv(lines: &[FigureLine]) -> Result<Vec<u8>, csv::Error> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    for line in lines {
-        writer.serialize(line)?;
+    to_csv(lines)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::monte_carlo::TrialRecord;
+    use crate::report::sample;
+
+    #[test]
+    fn discordance_is_a_share_of_the_pairs_not_of_all_trials() {
+        let mut results = sample::run().results;
+        let name = |row: usize| results.scenario.rows[row].name.clone();
+        let (default, other) = (name(0), name(1));
+        results.records.retain(|record| record.row == default);
+        let opposite = |record: &TrialRecord| {
+            let is_success = !record.is_success;
+            TrialRecord { row: other.clone(), is_success, ..record.clone() }
+        };
+        let opposites: Vec<TrialRecord> = results.records.iter().map(opposite).collect();
+        results.records.truncate(20);
+        results.records.extend(opposites);
+        let lines = figure_lines(&results).expect("legal rows");
+        assert_eq!((lines[1].trials, lines[1].pairs, lines[1].discordance()), (60, Some(20), Some(1.0)));
     }
-    writer.into_inner().map_err(|error| csv::Error::from(error.into_error()))
 }

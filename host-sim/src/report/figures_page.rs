@@ -218,7 +218,7 @@ mod tests {
         let csv = String::from_utf8(figures_csv(&lines).expect("a table")).expect("UTF-8");
         assert_eq!(csv.lines().count(), 1 + lines.len());
         let columns = "row,figure,setting,start,polarity,trials,successes,success_rate,success_rate_low,success_rate_high,\
-                       mean_looks,mean_localizer_s,test,only_default,only_setting,difference,difference_low,difference_high,\
+                       mean_looks,mean_localizer_s,test,pairs,only_default,only_setting,difference,difference_low,difference_high,\
                        p,p_holm,paper_success_rate,paper_time_s";
         assert_eq!(csv.lines().next(), Some(columns));
     }

@@ -1,23 +1,27 @@
-//! `journal.ndjson`: the trials of an unfinished run, one JSON value a line, appended as they end.
+//! `journal.ndjson`: the trials of an unfinished run, one JSON value a line, appended as they end, each with the wall time
+//! that the run had taken by then.
 //!
 //! A line is written whole; what a crash leaves of the last one is dropped when the run goes on. The order is that in which
 //! trials ended, the results sort them. The file is locked while a process writes it and removed when the run is complete.
 
 use super::RunFolderError;
 use crate::monte_carlo::TimedTrial;
+use serde::{Deserialize, Serialize};
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Longest time that an appended line waits for the disk.
+/// An appended line goes to the disk at once, with those before it, when the last one did so this long ago.
 const SYNC_INTERVAL: Duration = Duration::from_secs(1);
 
 /// The journal of a run under way.
 #[derive(Debug)]
 pub struct Journal {
     path: PathBuf,
+    begun: Instant,
+    elapsed_before: Duration,
     state: Mutex<State>,
 }
 
@@ -26,6 +30,14 @@ struct State {
     file: File,
     synced: Instant,
     failure: Option<std::io::Error>,
+}
+
+/// A line of the journal.
+#[derive(Serialize, Deserialize)]
+struct Line<T> {
+    /// Wall time of learning and trials, in this process and those before it, until the trial ended.
+    elapsed: Duration,
+    trial: T,
 }
 
 impl Journal {
@@ -46,28 +58,36 @@ impl Journal {
             Err(TryLockError::WouldBlock) => return Err(RunFolderError::UnderWay { path: folder.to_owned() }),
             Err(TryLockError::Error(source)) => return Err(reading(source)),
         }
-        let mut trials = Vec::new();
+        let (mut trials, mut elapsed_before) = (Vec::new(), Duration::ZERO);
         let mut lines = BufReader::new(&mut file);
         let (mut line, mut whole_bytes) = (Vec::new(), 0);
         while lines.read_until(b'\n', &mut line).map_err(reading)? > 0 && line.ends_with(b"\n") {
             whole_bytes += line.len() as u64;
-            let trial = serde_json::from_slice(&line).map_err(|error| RunFolderError::Damaged {
+            let read: Line<TimedTrial> = serde_json::from_slice(&line).map_err(|error| RunFolderError::Damaged {
                 path: path.clone(),
                 reason: format!("line {}: {error}", trials.len() + 1),
             })?;
-            trials.push(trial);
+            elapsed_before = read.elapsed;
+            trials.push(read.trial);
             line.clear();
         }
         file.set_len(whole_bytes).and_then(|()| file.seek(SeekFrom::End(0))).map_err(reading)?;
         let state = Mutex::new(State { file, synced: Instant::now(), failure: None });
-        Ok((Self { path, state }, trials))
+        Ok((Self { path, begun: Instant::now(), elapsed_before, state }, trials))
+    }
+
+    /// Wall time since the journal was opened, and before that in every process until its last trial ended.
+    #[must_use]
+    pub fn elapsed(&self) -> Duration {
+        self.elapsed_before + self.begun.elapsed()
     }
 
     /// Appends a trial that ended. A failure is kept for [`Self::close`]; later trials are not written then.
     pub fn append(&self, trial: &TimedTrial) {
-        let mut line = serde_json::to_vec(trial).expect("a trial is plain values");
-        line.push(b'\n');
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        let line = Line { elapsed: self.elapsed(), trial };
+        let mut line = serde_json::to_vec(&line).expect("a trial is plain values");
+        line.push(b'\n');
         if state.failure.is_some() {
             return;
         }
@@ -113,6 +133,7 @@ mod tests {
         let (journal, none) = Journal::open(folder.path()).expect("a journal");
         assert_eq!(none, []);
         trials[..2].iter().for_each(|trial| journal.append(trial));
+        let elapsed = journal.elapsed();
         journal.close().expect("written");
 
         let path = folder.path().join(Journal::FILE);
@@ -122,6 +143,8 @@ mod tests {
         std::fs::write(&path, &torn).expect("written");
         let (journal, read) = Journal::open(folder.path()).expect("a journal");
         assert_eq!(read, trials[..2]);
+        assert!(journal.elapsed_before > Duration::ZERO && journal.elapsed_before <= elapsed);
+        assert!(journal.elapsed() > journal.elapsed_before);
         assert_eq!(std::fs::metadata(&path).expect("a file").len(), whole as u64);
         journal.append(&trials[2]);
         journal.close().expect("written");

@@ -78,7 +78,7 @@ pub struct HostFacts {
     pub processor: Option<String>,
     /// Threads the machine runs at once.
     pub available_threads: usize,
-    /// Threads the run used.
+    /// Threads the run used; of a resumed run those it began with.
     pub used_threads: usize,
 }
 

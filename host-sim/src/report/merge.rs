@@ -2,6 +2,7 @@
 
 use super::{Manifest, RunResults, RunTimings, Summary};
 use crate::monte_carlo::{RunOutcome, Shard, TimedTrial, count_trials};
+use crate::scenario::Scenario;
 use miette::Diagnostic;
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -56,7 +57,10 @@ pub fn merge(mut shards: Vec<ShardResults>) -> Result<(RunResults, Vec<Vec<Durat
     let mut whole = None;
     for part in shards {
         let RunResults { manifest, scenario, nodes, records, summary, .. } = part.results;
-        let row_of = |name: &str| scenario.rows.iter().position(|row| row.name == name).unwrap_or(0);
+        let row_of = |name: &str| {
+            let place = scenario.rows.iter().position(|row| row.name == name);
+            place.expect("check_complete refuses rows that the scenario lacks")
+        };
         let timed = records.into_iter().zip(part.look_times);
         ended.extend(timed.map(|(record, look_times)| TimedTrial { row: row_of(&record.row), record, look_times }));
         whole.get_or_insert((manifest, scenario, nodes, summary.free_area_m2));
@@ -86,17 +90,24 @@ fn shard_of(part: &ShardResults) -> Result<Shard, MergeError> {
     part.results.manifest.shard.ok_or_else(|| MergeError::Whole { folder: part.folder.clone() })
 }
 
-/// Whether two folders belong to one run: program, world, scenario, nodes and number of shards.
+/// Whether two folders belong to one run: program, world, scenario, nodes and number of shards. Where the files of the
+/// world lie is each machine's own business; their checksums decide.
 fn check_same_run(first: &ShardResults, other: &ShardResults) -> Result<(), MergeError> {
     let (a, b) = (&first.results, &other.results);
     let count = |results: &RunResults| results.manifest.shard.map(|shard| shard.count);
+    let visibility =
+        |results: &RunResults| results.manifest.world.visibility.as_ref().map(|facts| facts.checksum.clone());
+    let scenario = |results: &RunResults| {
+        let scenario = &results.scenario;
+        Scenario { world: scenario.world.without_paths(), ..scenario.clone() }
+    };
     let what = if !a.manifest.is_of_same_program(&b.manifest) {
         "the version of the program"
     } else if a.manifest.world.checksum != b.manifest.world.checksum {
         "the world"
-    } else if a.manifest.world.visibility != b.manifest.world.visibility {
+    } else if visibility(a) != visibility(b) {
         "what is visible in the world"
-    } else if a.scenario != b.scenario {
+    } else if scenario(a) != scenario(b) {
         "the scenario"
     } else if a.nodes != b.nodes {
         "the nodes"
@@ -115,6 +126,9 @@ fn check_complete(part: &ShardResults, shard: Shard) -> Result<(), MergeError> {
     let trials = shard.trials(scenario).map_err(|error| refused(error.to_string()))?;
     let settings = scenario.settings().map_err(|illegal| refused(illegal.to_string()))?;
     let expected = count_trials(&settings, &trials);
+    if let Some(record) = records.iter().find(|record| scenario.row(Some(&record.row)).is_none()) {
+        return Err(refused(format!("the scenario has no row {:?}", record.row)));
+    }
     let mut found: Vec<(&str, u32)> = records.iter().map(|record| (record.row.as_str(), record.trial)).collect();
     found.sort_unstable();
     found.dedup();
@@ -185,7 +199,10 @@ pub enum MergeError {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::manifest::VisibilityFacts;
     use crate::report::sample;
+    use crate::scenario::{Building, VisibilityChoice, WorldChoice};
+    use std::path::Path;
 
     /// The sample's run in `count` parts.
     fn parts(count: u32) -> Vec<ShardResults> {
@@ -215,6 +232,22 @@ mod tests {
     }
 
     #[test]
+    fn shards_made_in_different_folders_are_one_run() {
+        let mut shards = parts(2);
+        for part in &mut shards {
+            let folder = Path::new("/").join(&part.folder);
+            part.results.scenario.world = WorldChoice {
+                building: Building::File { file: folder.join("hall.edgeworld") },
+                visibility: VisibilityChoice::File(folder.join("hall.views")),
+            };
+            let file = Some(folder.join("hall.views").display().to_string());
+            let checksum = "5".to_owned();
+            part.results.manifest.world.visibility = Some(VisibilityFacts { file, viewpoints: 9, checksum });
+        }
+        assert_eq!(merge(shards).expect("one run").0.records.len(), 240);
+    }
+
+    #[test]
     fn missing_doubled_foreign_and_damaged_shards_are_named() {
         let refused = |change: fn(&mut Vec<ShardResults>)| {
             let mut shards = parts(3);
@@ -235,6 +268,8 @@ mod tests {
         assert_eq!(doubled, "shard 3/3 is there twice: part-3 and part-3");
         let torn = refused(|s| drop(s[0].results.records.pop()));
         assert!(torn.contains("part-1 is damaged"), "{torn}");
+        let unknown = refused(|s| s[0].results.records[0].row = "far".to_owned());
+        assert!(unknown.contains("the scenario has no row \"far\""), "{unknown}");
         let strange = refused(|s| s[0].results.records[0].trial = 59);
         assert!(strange.contains("trial 59 of row"), "{strange}");
     }

@@ -3,7 +3,7 @@
 use super::document::{document, inline};
 use super::drawing::{SERIES_COUNT, percent};
 use super::{
-    FloorPlan, FreeCells, PAPER_INTERVAL, RowSummary, RunResults, Summary, looks_histogram, rate_strip,
+    FloorPlan, FreeCells, Manifest, PAPER_INTERVAL, RowSummary, RunResults, Summary, looks_histogram, rate_strip,
     success_by_distance, trial_marks, worst_trials,
 };
 use crate::monte_carlo::{Outcome, TrialRecord};
@@ -38,24 +38,9 @@ pub fn page(results: &RunResults, world: Option<&WireframeWorld>, free: Option<&
 }
 
 fn subtitle(results: &RunResults) -> String {
-    let Manifested { trials, rows, world, started } = Manifested::of(results);
-    format!("{trials} trials in {rows} rows · world {world} · started {started} UTC")
-}
-
-/// The words of the subtitle.
-struct Manifested<'r> {
-    trials: usize,
-    rows: usize,
-    world: &'r str,
-    started: String,
-}
-
-impl<'r> Manifested<'r> {
-    fn of(results: &'r RunResults) -> Self {
-        let manifest = &results.manifest;
-        let started = manifest.started_utc.trim_end_matches('Z').replace('T', " ");
-        Self { trials: manifest.trials, rows: manifest.rows, world: &manifest.world.name, started }
-    }
+    let Manifest { trials, rows, world, started_utc, .. } = &results.manifest;
+    let started = started_utc.trim_end_matches('Z').replace('T', " ");
+    format!("{trials} trials in {rows} rows · world {} · started {started} UTC", world.name)
 }
 
 fn headline(results: &RunResults) -> Markup {

@@ -1,14 +1,14 @@
 //! The folder of a run: `manifest.json`, `scenario.toml`, `trials.csv`, `nodes.csv`, `summary.json`, `timings.json`,
 //! `look_times.csv`, `report.html`.
 //!
-//! Every file but the journal is written under another name and renamed, so that none is ever half there. A folder is never
-//! reused. It is made when the run begins, with `manifest.json`, `scenario.toml` and a journal of the trials that ended, from
+//! Every file but the journal is written whole or not at all, so that none is ever half there. A folder is never reused. It is made when the run begins, with `manifest.json`, `scenario.toml` and a journal of the trials that ended, from
 //! which an interrupted run goes on; when the run is complete, the results take the journal's place.
 
 use super::timings::{look_times_csv, read_look_times};
 use super::{Journal, Manifest, RunTimings, Summary, trials_csv};
 use crate::monte_carlo::TrialRecord;
 use crate::scenario::{Row, Scenario, ScenarioError};
+use crate::whole_file;
 use edgeloc::geometry::Point2;
 use miette::Diagnostic;
 use serde::de::DeserializeOwned;
@@ -126,16 +126,13 @@ impl RunFolder {
         &self.path
     }
 
-    /// Writes a file whole.
+    /// Writes a file whole or not at all.
     ///
     /// # Errors
     /// When it can't be written.
     pub fn write(&self, file: &str, content: &[u8]) -> Result<PathBuf, RunFolderError> {
         let path = self.path.join(file);
-        let partial = self.path.join(format!(".{file}.partial"));
-        fs::write(&partial, content)
-            .and_then(|()| fs::rename(&partial, &path))
-            .map_err(RunFolderError::writing(path.clone()))?;
+        whole_file::write(&path, content).map_err(RunFolderError::writing(path.clone()))?;
         Ok(path)
     }
 
@@ -160,7 +157,7 @@ impl RunFolder {
         self.write("summary.json", &to_json(&results.summary))?;
         self.write("timings.json", &to_json(&results.timings))?;
         self.write("manifest.json", &to_json(&results.manifest))?;
-        // The results hold all that is in it. Without it nothing is lost, with it nothing is wrong.
+        // The results, by now on the disk, hold all that is in it. Without it nothing is lost, with it nothing is wrong.
         let _ = fs::remove_file(self.path.join(Journal::FILE));
         Ok(())
     }
@@ -268,7 +265,8 @@ fn symlink(target: &Path, link: &Path) -> std::io::Result<()> {
     fs::write(link, target.display().to_string())
 }
 
-fn to_csv<T: Serialize>(lines: impl IntoIterator<Item = T>) -> Result<Vec<u8>, csv::Error> {
+/// Lines as CSV, the columns named as their fields.
+pub(super) fn to_csv<T: Serialize>(lines: impl IntoIterator<Item = T>) -> Result<Vec<u8>, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for line in lines {
         writer.serialize(line)?;

@@ -9,9 +9,10 @@ use std::time::Duration;
 /// Wall times of a run.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct RunTimings {
-    /// Making the world ready (free space, nodes, what is seen from each), in seconds.
+    /// Making the world ready (free space, nodes, what is seen from each), in seconds; of a resumed run the last time.
     pub prepare_s: f64,
-    /// Learning all maps and running all trials, in seconds.
+    /// Learning all maps and running all trials, in seconds; of a resumed run before and after the interruption, without
+    /// the trials that were under way.
     pub trials_s: f64,
     /// One entry a row.
     pub rows: Vec<RowTimings>,

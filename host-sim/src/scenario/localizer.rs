@@ -1,5 +1,6 @@
 //! The localiser as a scenario states it; by default the paper's.
 
+use super::decimal;
 use edgeloc::geometry::Angle;
 use edgeloc::localize::{LocalizerConfig, VerificationConfig};
 use edgeloc::pgh::{DistanceKind, PghShape};
@@ -127,11 +128,6 @@ impl Default for VerificationSettings {
             VerificationConfig::reference();
         Self { cells_per_side, headings, confidence: decimal(confidence), refined, finalists }
     }
-}
-
-/// The number that its shortest decimals stand for: 0.45, where widening the `f32` gives 0.449999988...
-fn decimal(value: f32) -> f64 {
-    value.to_string().parse().expect("a number's own decimals")
 }
 
 impl VerificationSettings {

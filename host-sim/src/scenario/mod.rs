@@ -108,3 +108,8 @@ impl Default for LearningSettings {
         Self { nodes: 72, placement: NodePlacement::Spread, views: 12, join: false }
     }
 }
+
+/// The shortest decimal number that rounds to `value`: 0.12, not 0.11999999731779099.
+fn decimal(value: f32) -> f64 {
+    value.to_string().parse().expect("a float prints as a number")
+}

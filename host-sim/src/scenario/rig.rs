@@ -1,5 +1,6 @@
 //! The stereo rig as a scenario states it; by default [`StereoRig::reference`].
 
+use super::decimal;
 use edgeloc::geometry::{PinholeCamera, Point2, StereoRig};
 use serde::{Deserialize, Serialize};
 
@@ -74,11 +75,6 @@ impl RigSettings {
         .checked()
         .map_err(|error| error.to_string())
     }
-}
-
-/// The shortest decimal number that rounds to `value`: 0.12, not 0.11999999731779099.
-fn decimal(value: f32) -> f64 {
-    value.to_string().parse().expect("a float prints as a number")
 }
 
 #[cfg(test)]

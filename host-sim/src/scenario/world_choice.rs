@@ -51,8 +51,25 @@ impl WorldChoice {
         Self { building: Building::File { file }, visibility: VisibilityChoice::Surfaces }
     }
 
+    /// The same choice wherever its files lie: of two that are equal then, the checksums of world and viewpoints tell
+    /// whether they are the same.
+    #[must_use]
+    pub fn without_paths(&self) -> Self {
+        let mut choice = self.clone();
+        choice.paths().for_each(PathBuf::clear);
+        choice
+    }
+
     /// Makes relative paths absolute, counted from `folder`.
     pub(super) fn complete_paths(&mut self, folder: &Path) {
+        for file in self.paths().filter(|file| file.is_relative()) {
+            let joined = folder.join(&*file);
+            *file = std::path::absolute(&joined).unwrap_or(joined);
+        }
+    }
+
+    /// The paths of the files that it names.
+    fn paths(&mut self) -> impl Iterator<Item = &mut PathBuf> {
         let building = match &mut self.building {
             Building::File { file } => Some(file),
             Building::Office { .. } => None,
@@ -61,10 +78,7 @@ impl WorldChoice {
             VisibilityChoice::File(file) => Some(file),
             VisibilityChoice::Surfaces => None,
         };
-        for file in building.into_iter().chain(views).filter(|file| file.is_relative()) {
-            let joined = folder.join(&*file);
-            *file = std::path::absolute(&joined).unwrap_or(joined);
-        }
+        building.into_iter().chain(views)
     }
 }
 

@@ -72,7 +72,7 @@ pub enum Against {
 
 /// A row against the default.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Comparison {
+pub struct DefaultComparison {
     /// With what, and what came out.
     pub against: Against,
     /// Two-sided p-value; none where nothing is compared.
@@ -95,7 +95,10 @@ impl Against {
 ///
 /// # Errors
 /// The first row that is not legal.
-pub fn compare_with_default(scenario: &Scenario, records: &[TrialRecord]) -> Result<Vec<Comparison>, IllegalValue> {
+pub fn compare_with_default(
+    scenario: &Scenario,
+    records: &[TrialRecord],
+) -> Result<Vec<DefaultComparison>, IllegalValue> {
     let settings = scenario.settings()?;
     let defaults = settings.iter().map(|setting| changes_nothing(scenario, setting)).collect::<Vec<_>>();
     let mut trials: BTreeMap<&str, BTreeMap<u32, &TrialRecord>> = BTreeMap::new();
@@ -116,7 +119,7 @@ pub fn compare_with_default(scenario: &Scenario, records: &[TrialRecord]) -> Res
     let all: Vec<Against> = (0..settings.len()).map(against).collect();
     let p_values: Vec<Option<f64>> = all.iter().map(Against::p).collect();
     let corrected = holm(&p_values);
-    let join = |((against, p), p_holm)| Comparison { against, p, p_holm };
+    let join = |((against, p), p_holm)| DefaultComparison { against, p, p_holm };
     Ok(all.into_iter().zip(p_values).zip(corrected).map(join).collect())
 }
 
@@ -127,8 +130,7 @@ fn changes_nothing(scenario: &Scenario, setting: &Setting) -> bool {
 
 fn against(default: &BTreeMap<u32, &TrialRecord>, row: &BTreeMap<u32, &TrialRecord>) -> Against {
     let pairs = default.iter().filter_map(|(trial, a)| row.get(trial).map(|b| (*a, *b))).collect::<Vec<_>>();
-    let pose = |record: &TrialRecord| [record.true_x_m, record.true_y_m, record.true_heading_deg].map(f32::to_bits);
-    if pairs.iter().all(|(a, b)| pose(a) == pose(b)) {
+    if pairs.iter().all(|(a, b)| a.has_pose_of(b)) {
         return Against::Paired(PairedCounts::of(pairs.iter().map(|(a, b)| (a.is_success, b.is_success))));
     }
     let rate = |trials: &BTreeMap<u32, &TrialRecord>| SuccessRate::of(trials.values().map(|record| record.is_success));
@@ -244,7 +246,7 @@ mod tests {
         let mut study = study();
         study.rows.truncate(1);
         let compared = compare_with_default(&study, &[record("4(a): B_th 0", 0, true)]).expect("legal rows");
-        assert_eq!(compared, [Comparison { against: Against::NoDefault, p: None, p_holm: None }]);
+        assert_eq!(compared, [DefaultComparison { against: Against::NoDefault, p: None, p_holm: None }]);
     }
 
     #[test]

@@ -20,7 +20,8 @@ pub use axis::{Axis, draw_points};
 pub use evaluate::{samples, stage_scenario};
 pub use evidence::{is_proven, log_evidence};
 pub use figures::{
-    Against, Comparison, Figure, against_row, compare_with_default, figure_and_setting, figures_of, with_anywhere,
+    Against, DefaultComparison, Figure, against_row, compare_with_default, figure_and_setting, figures_of,
+    with_anywhere,
 };
 pub use front::{Merit, front_ranks};
 pub use halving::{ALPHA, FAR_BELOW, Fate, Schedule, Stage, Standing, choose, confirmed_front, search};

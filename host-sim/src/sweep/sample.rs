@@ -11,7 +11,8 @@ pub struct TrialResult {
     pub is_success: bool,
     /// Looks taken.
     pub looks: u32,
-    /// Work of the localiser: histogram cells laid side by side, a count that is the same on every machine.
+    /// Work of the localiser: nodes scored in all looks, each weighed by the bins of its histograms; the same on every
+    /// machine.
     pub work: f64,
 }
 

@@ -21,7 +21,7 @@ const FACTS: SourceFacts = SourceFacts {
     is_enabled_by_default: true,
     default_magnitude: 0.15,
     legal_range: (0.0, 0.6),
-    acts_in: ActsIn::Learning,
+    acts_in: ActsIn::Calibration,
     cause: "in each image the corner detector misses that share, +- two thirds of it, before calibration",
     citation: "Tian et al., section 4.2, after Thacker and Courtney 1992",
 };

@@ -22,7 +22,7 @@ const FACTS: SourceFacts = SourceFacts {
     is_enabled_by_default: true,
     default_magnitude: 0.01,
     legal_range: (0.0, 0.25),
-    acts_in: ActsIn::Learning,
+    acts_in: ActsIn::Calibration,
     cause: "in each image that share of the corners, +- as much, is matched up to 10 px beside, before calibration",
     citation: "Tian et al., section 4.2, after Thacker and Courtney 1992",
 };

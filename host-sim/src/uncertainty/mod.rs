@@ -14,7 +14,7 @@
 //! | [`PolarityFlips`] | | off; 5 % | looks | swaps the bright and the dark side of that share of the features |
 //! | [`LateralEdgeShift`] | psi_l | 3 px | both | moves each feature along its image normal |
 //! | [`EdgeDetectionLoss`] | psi_e | 11.25 % | both | takes that share of the length away: gaps and whole features |
-//! | [`GeometricApproximation`] | psi_g | 0.15 px | both | moves each end point |
+//! | [`GeometricApproximation`] | psi_g | 0.15 px | both | moves each end point, in some images farther than in others |
 //! | [`ImageNoise`] | (psi_l, psi_g) | 0 grey levels | both | moves pieces and end points as noisy pixels do |
 //! | [`EpipolarRemoval`] | | 5 degrees | learning | leaves near-horizontal features unmatched |
 //! | [`StereoMatch`] | psi_s | 1 % | learning | matches that share of the features wrongly |

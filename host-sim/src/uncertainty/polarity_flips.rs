@@ -39,7 +39,7 @@ impl UncertaintySource for PolarityFlips {
     }
 }
 
-/// The same piece, its other side the brighter one: walked backwards and its end points swapped back.
+/// The same piece from the same start to the same end, its other side the brighter one.
 fn flipped(piece: &Segment2) -> Segment2 {
     Segment2::new(piece.start(), piece.end(), piece.polarity().flipped()).unwrap_or(*piece)
 }

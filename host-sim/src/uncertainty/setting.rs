@@ -64,6 +64,8 @@ pub struct SourceFacts {
 pub enum ActsIn {
     /// While the world is learned.
     Learning,
+    /// While the robot calibrates its cameras, before it learns.
+    Calibration,
     /// In the looks of a trial.
     Looks,
     /// In learning and in looks alike.
@@ -74,6 +76,7 @@ impl std::fmt::Display for ActsIn {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Self::Learning => "learning",
+            Self::Calibration => "calibration",
             Self::Looks => "looks",
             Self::Both => "learning and looks",
         })

@@ -198,6 +198,7 @@ impl NoiseKey {
     fn is_of(&self, acts_in: ActsIn) -> bool {
         match acts_in {
             ActsIn::Learning => self.purpose == Self::VIEW,
+            ActsIn::Calibration => self.purpose == Self::CORNERS,
             ActsIn::Looks => self.purpose == Self::LOOK,
             ActsIn::Both => true,
         }
@@ -213,8 +214,9 @@ impl NoiseKey {
 mod tests {
     use super::*;
     use crate::camera::StereoFeature;
-    use crate::uncertainty::test_observation::observation;
+    use crate::uncertainty::test_observation::{corners, observation};
     use edgeloc::geometry::{Polarity, Segment2};
+    use edgeloc::stereo::CornerPair;
 
     const KEY: NoiseKey = NoiseKey::view(9, 4, 0, 0);
 
@@ -249,18 +251,22 @@ mod tests {
         table.try_into().expect("legal sources")
     }
 
-    fn keys() -> Vec<&'static str> {
-        Sources::none().pipeline().iter().map(|source| source.facts().key).collect()
+    /// What the sources leave of a view, of a look, of the corners of a calibration, of a heading and of a robot.
+    fn effects(sources: &Sources) -> (StereoObservation, StereoObservation, Vec<CornerPair>, HeadingPrior, bool) {
+        let (look_key, mut look, mut corners) = (NoiseKey::look(9, 4, 0), observation(300), corners(300));
+        sources.apply(&mut look, &look_key);
+        sources.perturb_corners(&mut corners, 9, 0);
+        let reading = sources.compass_reading(Heading::default(), &look_key);
+        (applied(sources), look, corners, reading, sources.camera_calibration.acts())
     }
 
     #[test]
-    fn magnitude_zero_is_the_identity_for_every_source() {
-        for key in keys() {
-            for noise in [KEY, NoiseKey::look(9, 4, 0)] {
-                let mut observation = observation(300);
-                alone(key, Some(0.0)).apply(&mut observation, &noise);
-                assert_eq!(observation, applied(&Sources::none()), "{key}");
-            }
+    fn every_source_acts_and_at_magnitude_zero_it_is_the_identity() {
+        let nothing = effects(&Sources::none());
+        for source in Sources::none().pipeline() {
+            let SourceFacts { key, legal_range, .. } = source.facts();
+            assert!(effects(&alone(key, Some(0.0))) == nothing, "{key} acts at magnitude 0");
+            assert!(effects(&alone(key, Some(legal_range.1))) != nothing, "{key} does not act");
         }
     }
 

@@ -21,9 +21,10 @@
 //! index has its vertex; [`save`] refuses a world that breaks a promise.
 
 use super::{Surfaces, WireframeWorld};
+use crate::whole_file;
 use edgeloc::geometry::{Point3, Polarity, Segment3};
 use std::fs::{self, File};
-use std::io::{Read, Write};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 const MAGIC: [u8; 8] = *b"edgewrld";
@@ -112,17 +113,7 @@ pub fn save(world: &WireframeWorld, path: &Path) -> Result<(), WorldFileError> {
     let write = || {
         check(world)?;
         let bytes = encode(world)?;
-        let mut temporary = path.as_os_str().to_owned();
-        temporary.push(format!(".{}.part", std::process::id()));
-        let temporary = PathBuf::from(temporary);
-        let written = File::create(&temporary)
-            .and_then(|mut file| file.write_all(&bytes).and_then(|()| file.sync_all()))
-            .and_then(|()| fs::rename(&temporary, path));
-        if written.is_err() {
-            // The error that is reported is the one that mattered.
-            let _ = fs::remove_file(&temporary);
-        }
-        Ok(written?)
+        Ok(whole_file::write(path, &bytes)?)
     };
     write().map_err(|fault| WorldFileError { path: path.to_path_buf(), fault })
 }

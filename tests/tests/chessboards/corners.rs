@@ -4,13 +4,13 @@
 const HALF_WINDOW: i32 = 5;
 
 /// A grey image.
-pub(crate) struct GreyImage {
+pub(crate) struct GrayImage {
     pub(crate) width: usize,
     pub(crate) height: usize,
     pub(crate) pixels: Vec<f64>,
 }
 
-impl GreyImage {
+impl GrayImage {
     fn at(&self, x: i32, y: i32) -> f64 {
         let x = x.clamp(0, self.width as i32 - 1) as usize;
         let y = y.clamp(0, self.height as i32 - 1) as usize;
@@ -56,7 +56,7 @@ impl GreyImage {
 }
 
 /// Corners, the clearest first, at most `most`.
-pub(crate) fn find(image: &GreyImage, most: usize) -> Vec<[f64; 2]> {
+pub(crate) fn find(image: &GrayImage, most: usize) -> Vec<[f64; 2]> {
     const RADIUS: i32 = 4;
     let smooth = image.smoothed().smoothed();
     let (width, height) = (image.width as i32, image.height as i32);
@@ -83,7 +83,7 @@ pub(crate) fn find(image: &GreyImage, most: usize) -> Vec<[f64; 2]> {
 
 /// Whether two edges cross here, as between four squares: round it, opposite sides are alike and neighbouring ones are
 /// not. At the rim of the board, one dark square among three light fields, they aren't.
-fn is_crossing(image: &GreyImage, [x, y]: [f64; 2]) -> bool {
+fn is_crossing(image: &GrayImage, [x, y]: [f64; 2]) -> bool {
     const RADIUS_PX: f64 = 4.0;
     let round = |step: u8| {
         let (sin, cos) = (f64::from(step) * std::f64::consts::TAU / 32.0).sin_cos();
@@ -94,7 +94,7 @@ fn is_crossing(image: &GreyImage, [x, y]: [f64; 2]) -> bool {
 }
 
 /// The point whose direction to every pixel round it is at right angles to the gradient there (Förstner).
-fn refined(image: &GreyImage, start: [f64; 2]) -> Option<[f64; 2]> {
+fn refined(image: &GrayImage, start: [f64; 2]) -> Option<[f64; 2]> {
     let [mut x, mut y] = start;
     for _ in 0..20 {
         let (mut xx, mut xy, mut yy, mut bx, mut by) = (0.0, 0.0, 0.0, 0.0, 0.0);

@@ -13,7 +13,7 @@ mod corners;
 mod grid;
 mod lens;
 
-use corners::GreyImage;
+use corners::GrayImage;
 use edgeloc::geometry::Point2;
 use edgeloc::stereo::{
     Calibration, CameraParameters, CornerPair, PARAMETERS, ParameterVector, StereoParameters, epipolar_distance_px,
@@ -29,23 +29,16 @@ use zune_jpeg::zune_core::options::DecoderOptions;
 const NOISE_PX: f64 = 0.2;
 
 fn folder() -> Option<PathBuf> {
-    let data = std::env::var_os("EDGELOC_DATA")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data"), PathBuf::from);
-    let folder = data.join("opencv_stereo_chessboards");
-    if !folder.is_dir() {
-        eprintln!("SKIPPED: no {}; set EDGELOC_DATA to where the stereo chessboards are", folder.display());
-        return None;
-    }
-    Some(folder)
+    edgeloc_tests::data_folder("opencv_stereo_chessboards")
 }
 
-fn image(path: &Path) -> GreyImage {
+fn image(path: &Path) -> GrayImage {
     let bytes = std::fs::read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     let options = DecoderOptions::default().jpeg_set_out_colorspace(ColorSpace::Luma);
     let mut decoder = JpegDecoder::new_with_options(Cursor::new(bytes), options);
     let pixels = decoder.decode().unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     let (width, height) = decoder.dimensions().expect("a decoded image has a size");
-    GreyImage { width, height, pixels: pixels.into_iter().map(f64::from).collect() }
+    GrayImage { width, height, pixels: pixels.into_iter().map(f64::from).collect() }
 }
 
 fn board(path: &Path) -> Option<Vec<[f64; 2]>> {

@@ -18,19 +18,37 @@ const CORE: &[Arrow] = &[
     ("localize", &["math", "geometry", "pgh", "matching", "database"]),
 ];
 
-/// `random < world < camera < uncertainty < learning < scenario < monte_carlo < sweep < report < cli`; an uncertainty
+/// `random, whole_file < world < camera < uncertainty < learning < scenario < monte_carlo < sweep < report < cli`; an uncertainty
 /// source never sees the world.
 const HOST_SIM: &[Arrow] = &[
     ("random", &[]),
-    ("world", &["random"]),
+    ("whole_file", &[]),
+    ("world", &["random", "whole_file"]),
     ("camera", &["random", "world"]),
     ("uncertainty", &["random", "camera"]),
     ("learning", &["random", "world", "camera", "uncertainty"]),
     ("scenario", &["random", "world", "camera", "uncertainty", "learning"]),
     ("monte_carlo", &["random", "world", "camera", "uncertainty", "learning", "scenario"]),
     ("sweep", &["random", "scenario", "monte_carlo"]),
-    ("report", &["random", "world", "camera", "uncertainty", "learning", "scenario", "monte_carlo", "sweep"]),
-    ("cli", &["random", "world", "camera", "uncertainty", "learning", "scenario", "monte_carlo", "sweep", "report"]),
+    (
+        "report",
+        &["random", "whole_file", "world", "camera", "uncertainty", "learning", "scenario", "monte_carlo", "sweep"],
+    ),
+    (
+        "cli",
+        &[
+            "random",
+            "whole_file",
+            "world",
+            "camera",
+            "uncertainty",
+            "learning",
+            "scenario",
+            "monte_carlo",
+            "sweep",
+            "report",
+        ],
+    ),
 ];
 
 /// The modules that the file at `path`, relative to its crate's `src`, stands for: `a/b.rs` and `a/b/mod.rs` are

@@ -35,11 +35,12 @@
 //! Limits: 64 MiB, 10,000 viewpoints, coordinates within 100 km.
 
 use super::{EdgeSet, ReferenceViewpoint, ReferenceViewpoints};
+use crate::whole_file;
 use edgeloc::geometry::Point2;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::fs::{self, File};
-use std::io::{Read, Write};
+use std::io::Read;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -110,7 +111,7 @@ pub fn load(path: &Path) -> Result<ReferenceViewpoints, ViewsFileError> {
     read().map_err(|fault| ViewsFileError { path: path.to_path_buf(), fault })
 }
 
-/// Writes the viewpoints to `path`, whole or not at all: to a temporary file beside it, which then takes its name.
+/// Writes the viewpoints to `path`, whole or not at all.
 ///
 /// # Errors
 /// When the system refuses, or they are more than a file may hold.
@@ -120,17 +121,7 @@ pub fn save(viewpoints: &ReferenceViewpoints, path: &Path) -> Result<(), ViewsFi
         if text.len() as u64 > MAX_FILE_BYTES {
             return Err(ViewsFileFault::TooLong);
         }
-        let mut temporary = path.as_os_str().to_owned();
-        temporary.push(format!(".{}.part", std::process::id()));
-        let temporary = PathBuf::from(temporary);
-        let written = File::create(&temporary)
-            .and_then(|mut file| file.write_all(text.as_bytes()).and_then(|()| file.sync_all()))
-            .and_then(|()| fs::rename(&temporary, path));
-        if written.is_err() {
-            // The error that is reported is the one that mattered.
-            let _ = fs::remove_file(&temporary);
-        }
-        Ok(written?)
+        Ok(whole_file::write(path, text.as_bytes())?)
     };
     write().map_err(|fault| ViewsFileError { path: path.to_path_buf(), fault })
 }

@@ -133,6 +133,17 @@ impl ReferenceViewpoints {
         })
     }
 
+    /// Whether these viewpoints were taken at the height of a robot's eye, to a millimetre.
+    ///
+    /// # Errors
+    /// When they were taken at another.
+    pub fn check_height(&self, camera_height_m: f32) -> Result<(), OtherHeight> {
+        if (self.camera_height_m - camera_height_m).abs() <= 1e-3 {
+            return Ok(());
+        }
+        Err(OtherHeight { taken_at_m: self.camera_height_m, camera_height_m })
+    }
+
     /// CRC-64 of the text of the file, bit for bit: viewpoints of the same sum give the same trials.
     #[must_use]
     pub fn checksum(&self) -> u64 {
@@ -155,6 +166,16 @@ pub struct OtherWorld {
     pub world: String,
     /// Its checksum.
     pub world_checksum: u64,
+}
+
+/// The viewpoints belong to another eye.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("the viewpoints were taken {taken_at_m} m above the floor, the camera stands {camera_height_m} m above it")]
+pub struct OtherHeight {
+    /// Height at which they were taken \[m\].
+    pub taken_at_m: f32,
+    /// Height of the camera at hand \[m\].
+    pub camera_height_m: f32,
 }
 
 #[cfg(test)]
@@ -225,6 +246,13 @@ mod tests {
         other.edges[1].end.z = 1.6;
         let error = viewpoints.check_world(&other).expect_err("it has changed").to_string();
         assert!(error.contains("made for the world \"three\""), "{error}");
+    }
+
+    #[test]
+    fn viewpoints_of_another_height_are_refused_with_both() {
+        assert_eq!(viewpoints().check_height(1.0), Ok(()));
+        let error = viewpoints().check_height(1.25).expect_err("another eye").to_string();
+        assert!(error.contains("taken 1 m") && error.contains("stands 1.25 m"), "{error}");
     }
 
     #[test]
