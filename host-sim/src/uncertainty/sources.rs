@@ -12,8 +12,8 @@
 
 use super::{
     ActsIn, CameraCalibration, CameraTilt, Clutter, Compass, CornerDetectionLoss, CornerMatch, EdgeDetectionLoss,
-    EpipolarRemoval, GeometricApproximation, ImageNoise, LateralEdgeShift, PolarityFlips, SourceFacts, SourceNumber,
-    SourceSetting, StereoMatch, UncertaintySource,
+    EpipolarRemoval, GeometricApproximation, ImageNoise, LateralEdgeShift, Occlusion, PolarityFlips, SourceFacts,
+    SourceNumber, SourceSetting, StereoMatch, UncertaintySource,
 };
 use crate::camera::StereoObservation;
 use crate::random::Stream;
@@ -66,6 +66,7 @@ macro_rules! list_of_sources {
 
 list_of_sources! {
     clutter: Clutter,
+    occlusion: Occlusion,
     camera_tilt: CameraTilt,
     polarity_flips: PolarityFlips,
     lateral_edge_shift: LateralEdgeShift,
