@@ -166,7 +166,7 @@ impl Running {
             records,
             scenario,
         };
-        let free = worlds::free_cells(&site.free_space);
+        let free = worlds::free_cells_of_run(&site.free_space, &results.scenario);
         let report = page(&results, Some(&site.world), Some(&free), &name(folder.path()));
         folder.write("report.html", report.as_bytes())?;
         folder.write_results(&results, &look_times)?;

@@ -48,7 +48,8 @@ pub struct TrialRecord {
     pub heading_error_deg: Option<f32>,
     /// Probability that the answer is right as the localiser has it, if it states one.
     pub probability: Option<f32>,
-    /// Whether the answered node is one of the two nearest (the paper's definition).
+    /// Whether the trial ended right: the answered node is one of the two nearest (the paper's definition), so that "I
+    /// can't tell" is a failure; but that alone is right where the robot started unlearned, at a place that no map knows.
     pub is_success: bool,
     /// Looks taken.
     pub looks: u32,

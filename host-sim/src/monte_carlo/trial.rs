@@ -2,7 +2,7 @@
 
 use super::looks::Looks;
 use super::{Outcome, Site, TrialRecord, TruePose};
-use crate::scenario::Setting;
+use crate::scenario::{Setting, Start};
 use edgeloc::database::{NodeId, TopologicalDatabase};
 use edgeloc::geometry::{Angle, Heading, Scene, Segment2};
 use edgeloc::localize::{Decision, HeadingPrior, Localizer, Look, Motion, ObserveError, StartError};
@@ -178,7 +178,10 @@ impl<'s> Trial<'s> {
             }
         }
         let nearest = [record.nearest_node, record.second_nearest_node];
-        record.is_success = record.answered_node.is_some_and(|node| nearest.contains(&node));
+        record.is_success = match self.setting.row.start {
+            Start::Near | Start::Anywhere => record.answered_node.is_some_and(|node| nearest.contains(&node)),
+            Start::Unlearned => record.outcome == Outcome::Unknown,
+        };
 
         let scores = localizer.candidates().scores();
         let leader = localizer.candidates().leading_node().map(|(node, _)| node);

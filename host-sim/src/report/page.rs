@@ -9,6 +9,7 @@ use super::{
 use crate::monte_carlo::{Outcome, TrialRecord};
 use crate::scenario::{Row, Start};
 use crate::world::WireframeWorld;
+use edgeloc::geometry::Point2;
 use maud::{Markup, html};
 use svg::Node as _;
 use svg::node::element::{Definitions, Group, SVG, Use};
@@ -23,7 +24,12 @@ const DRAWN_ROWS: usize = 12;
 /// Without the world or its free space the plan shows what is left.
 #[must_use]
 pub fn page(results: &RunResults, world: Option<&WireframeWorld>, free: Option<&FreeCells>, folder: &str) -> String {
-    let plans: Vec<FloorPlan> = results.nodes.iter().map(|nodes| FloorPlan::new(world, free, nodes)).collect();
+    let plan = |(row, nodes): (usize, &Vec<Point2>)| {
+        let plan = FloorPlan::new(world, free, nodes);
+        let withheld = free.and_then(|free| Some((free, free.withheld.get(row)?)));
+        withheld.map_or(plan.clone(), |(free, centers)| plan.with_withheld(free, centers))
+    };
+    let plans: Vec<FloorPlan> = results.nodes.iter().enumerate().map(plan).collect();
     let title = format!("edgeloc run: {}", results.scenario.name);
     let body = html! {
         (headline(results))
@@ -152,6 +158,7 @@ fn plans(results: &RunResults, plans: &[FloorPlan]) -> Markup {
         ul.legend {
             li { span.key.kgood {} "success" } li { span.key.kbad {} "failure" } li { span.key.kunknown {} "can't tell" }
             li { span.key.knode {} "node" } li { span.key.kfree {} "free space" }
+            @if rows.iter().any(|row| row.start == Start::Unlearned) { li { span.key.kwithheld {} "not learned" } }
         }
         (inline(&shared))
         div.panels {

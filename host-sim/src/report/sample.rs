@@ -43,7 +43,7 @@ pub(crate) fn run() -> Sample {
     let facts = WorldFacts::new(&world, &scenario.world);
     let manifest = Manifest::new(&scenario, facts, 2, None, records.len(), jiff::Timestamp::UNIX_EPOCH).finished();
     let results = RunResults { manifest, scenario, nodes, records, summary, timings };
-    Sample { results, world, free: FreeCells { centers, origin: Point2::default(), side_m: 0.1 } }
+    Sample { results, world, free: FreeCells { centers, origin: Point2::default(), side_m: 0.1, withheld: Vec::new() } }
 }
 
 fn record(stream: &mut Stream, row: &str, start: Start, trial: u32, nodes: &[Point2]) -> TrialRecord {
