@@ -59,6 +59,7 @@ impl Merge {
             return console::print_json(&RunPrinted { folder: folder.path(), summary: &results.summary });
         }
         console::print(&summary_table::headline(&results).to_string())?;
+        console::print(&summary_table::answers(&results).to_string())?;
         console::print(&format!("report: {}", folder.path().join("report.html").display()))
     }
 }

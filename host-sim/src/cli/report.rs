@@ -66,6 +66,7 @@ impl Report {
             return console::print_json(&RunPrinted { folder: folder.path(), summary: &results.summary });
         }
         console::print(&summary_table::headline(&results).to_string())?;
+        console::print(&summary_table::answers(&results).to_string())?;
         console::print(&summary_table::remarks(&results))?;
         console::print(&format!("report written: {}", report.display()))
     }

@@ -3,6 +3,7 @@
 //! [`RunFolder`] holds everything needed to repeat a run; [`page()`] makes one self-contained HTML file of it, drawings
 //! inline and without scripts. The drawings serve the command line too.
 
+mod answers;
 mod axes;
 mod charts;
 mod comparison;
@@ -31,7 +32,8 @@ mod trials_plan;
 #[cfg(test)]
 mod sample;
 
-pub use charts::{looks_histogram, rate_strip, success_by_distance};
+pub use answers::{AnswerFigures, ReliabilityBin, Share, expected_calibration_error, reliability};
+pub use charts::{looks_histogram, rate_strip, reliability_chart, success_by_distance};
 pub use comparison::{Comparison, NotPaired, Pairs, RunRow, Side};
 pub use drawing::to_svg_file;
 pub use explanation::{LookExplanation, NodeStanding, scene_drawing, sight};

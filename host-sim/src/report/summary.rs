@@ -1,5 +1,6 @@
 //! The figures of a run, row by row: what `summary.json` holds and the tables show. No wall times.
 
+use super::AnswerFigures;
 use crate::monte_carlo::{Outcome, SuccessRate, TrialRecord};
 use crate::scenario::{Scenario, Start};
 use edgeloc::geometry::Point2;
@@ -61,6 +62,8 @@ pub struct RowSummary {
     pub success_rate_low: f64,
     /// Upper end of the 95 % Wilson interval, a fraction.
     pub success_rate_high: f64,
+    /// What the answers are worth.
+    pub answers: AnswerFigures,
     /// Trials answered "I can't tell".
     pub unknown: u64,
     /// Trials that ended in an error of the localiser.
@@ -119,6 +122,7 @@ impl Summary {
                 success_rate: success.rate(),
                 success_rate_low: interval.0,
                 success_rate_high: interval.1,
+                answers: AnswerFigures::new(row.start, &records),
                 unknown: count(Outcome::Unknown),
                 errors: count(Outcome::Error),
                 mean_looks: mean(looks.iter().copied()),

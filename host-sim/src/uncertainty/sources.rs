@@ -102,14 +102,17 @@ impl Sources {
         }
     }
 
-    /// What the compass tells of a heading in the look of `key`; exact when its error is off.
+    /// What the compass tells of a heading in the look of `key`; exact when its error is off, `None` without a compass.
     #[must_use]
-    pub fn compass_reading(&self, heading: Heading, key: &NoiseKey) -> HeadingPrior {
+    pub fn compass_reading(&self, heading: Heading, key: &NoiseKey) -> Option<HeadingPrior> {
+        if !self.compass.available {
+            return None;
+        }
         if !self.compass.enabled {
-            return HeadingPrior::exact(heading);
+            return Some(HeadingPrior::exact(heading));
         }
         let facts = self.compass.facts();
-        self.compass.read(heading, &mut key.of_trial().stream(facts), &mut key.stream(facts))
+        Some(self.compass.read(heading, &mut key.of_trial().stream(facts), &mut key.stream(facts)))
     }
 
     /// The sources themselves, if every magnitude and every other number is legal.

@@ -78,14 +78,15 @@ fn look_section(facts: &TrialFacts<'_>, look: &LookExplanation, images: &LookIma
     let leader = ranking.first().map(|(node, _)| NodeId(*node as u32));
     let truth = NodeId(facts.record.nearest_node);
     let left = look.nodes.iter().filter(|node| node.is_candidate).count();
+    let told = look.compass_deg.map_or_else(|| "not told".to_owned(), |told| format!("told {told:.1}°"));
     html! {
         section {
             h2 { (format!("Look {}: {}", look.look, look.decision)) }
             p.note {
                 (format!(
-                    "True heading {:.1}°, told {:.1}°. {} segments seen, {} matched against {} candidates; the margin is B_th / i = \
+                    "True heading {:.1}°, {}. {} segments seen, {} matched against {} candidates; the margin is B_th / i = \
                      {:.4}, and {left} candidates are left.",
-                    look.heading_deg, look.compass_deg, look.seen_segments, look.used_segments, ranking.len(),
+                    look.heading_deg, told, look.seen_segments, look.used_segments, ranking.len(),
                     facts.config.score_margin / look.look as f32
                 ))
             }
