@@ -28,6 +28,8 @@ mod timings;
 mod trial_page;
 mod trials_csv;
 mod trials_plan;
+mod validation;
+mod validation_page;
 
 #[cfg(test)]
 mod sample;
@@ -54,3 +56,5 @@ pub use summary::{MapFacts, PAPER_INTERVAL, PAPER_RATE, RowSummary, Summary, wor
 pub use timings::{RowTimings, RunTimings};
 pub use trial_page::{TrialFacts, trial_page};
 pub use trials_plan::{trial_marks, trials_plan};
+pub use validation::{TotalLine, ValidationRow, WorldLine, validation, validation_csv};
+pub use validation_page::validation_page;

@@ -184,7 +184,7 @@ fn span_in(table: &DeTable<'_>, path: &[&str]) -> Option<Range<usize>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::{Building, Start, VisibilityChoice, WorldChoice};
+    use crate::scenario::{Building, LocalizerKind, Start, VisibilityChoice, WorldChoice};
     use crate::uncertainty::PolarityFlips;
     use std::path::PathBuf;
 
@@ -202,10 +202,30 @@ mod tests {
     }
 
     #[test]
-    fn the_bundled_edgeloc_is_the_papers_with_one_edge_in_twenty_flipped() {
-        let mut expected = Scenario { name: "edgeloc".to_owned(), ..Scenario::default() };
+    fn the_bundled_edgeloc_has_the_default_localiser_and_one_edge_in_twenty_flipped() {
+        let edgeloc = Scenario::load("edgeloc", &[]).expect("bundled");
+        let mut expected = Scenario { name: "edgeloc".to_owned(), rows: edgeloc.rows.clone(), ..Scenario::default() };
         expected.uncertainty.polarity_flips = PolarityFlips { enabled: true, magnitude: 0.05 };
-        assert_eq!(Scenario::load("edgeloc", &[]).expect("bundled"), expected);
+        expected.learning.join = true;
+        expected.localizer.kind = LocalizerKind::Edgeloc;
+        (expected.localizer.turn_deg, expected.localizer.max_looks) = (60.0, 6);
+        assert_eq!(edgeloc, expected);
+        let starts = edgeloc.rows.iter().map(|row| row.start);
+        assert_eq!(starts.collect::<Vec<_>>(), [Start::Anywhere, Start::Near, Start::Unlearned]);
+    }
+
+    #[test]
+    fn studies_of_the_default_localiser_begin_with_it_and_the_demo_has_it_beside_the_papers() {
+        let row_of = |preset: &str, row: usize| {
+            let scenario = Scenario::load(preset, &[]).expect("bundled");
+            let setting = scenario.settings().expect("legal").swap_remove(row).scenario;
+            (setting.localizer, setting.learning, setting.uncertainty)
+        };
+        let default = row_of("edgeloc", 0);
+        assert_eq!((row_of("stress", 0), row_of("ablation", 0)), (default.clone(), default.clone()));
+        assert_eq!(row_of("demo", 1), default);
+        let paper = Scenario::default();
+        assert_eq!(row_of("demo", 0), (paper.localizer, paper.learning, default.2));
     }
 
     #[test]
