@@ -2,7 +2,8 @@
 
 use edgeloc::geometry::{Angle, Heading, Point2};
 use edgeloc_sim::monte_carlo::{
-    LookEvent, Outcome, Part, RunOutcome, Shard, Site, Sites, TimedTrial, TrialRecord, TruePose, replay, run, run_part,
+    LookEvent, Outcome, Part, RunOutcome, Shard, Site, Sites, TimedTrial, TrialRecord, TruePose, UnknownKind, replay,
+    run, run_part,
 };
 use edgeloc_sim::scenario::{LocalizerKind, Row, Scenario, Setting, Start};
 use edgeloc_sim::uncertainty::Sources;
@@ -184,6 +185,49 @@ fn where_nothing_was_learned_only_i_cannot_tell_is_right() {
         }
     }
     assert!(outcomes[1] > 0, "{outcomes:?}");
+}
+
+#[test]
+fn without_an_answer_the_rivals_are_named_and_the_record_says_whether_the_truth_is_among_them() {
+    let mut scenario = small_scenario();
+    scenario.localizer.kind = LocalizerKind::Edgeloc;
+    scenario.localizer.max_looks = 1;
+    // Never sure, so that every scene that shows enough ends with rivals.
+    scenario.localizer.verification.confidence = 100.0;
+    scenario.rows = vec![Row::new("anywhere", Start::Anywhere, true)];
+    let records = run_on(2, &office_sites(&scenario)).records;
+    let mut named = [0; 2];
+    for record in &records {
+        assert_eq!((record.outcome, record.is_success, record.is_near_tie), (Outcome::Unknown, false, false));
+        let is_rivalry = record.unknown_kind == Some(UnknownKind::Indistinguishable);
+        assert_eq!(record.rivals.is_some(), is_rivalry, "{record:?}");
+        let Some(rivals) = &record.rivals else { continue };
+        let (mut is_here, mut sum) = (false, 0.0);
+        for rival in rivals.split(' ') {
+            let (node, rest) = rival.split_once('@').expect("a node at a place");
+            let (place, probability) = rest.split_once(':').expect("a place with its probability");
+            let (x, y) = place.split_once(',').expect("x and y");
+            let number = |text: &str| text.parse::<f32>().expect("a number");
+            let distance = Point2::new(number(x), number(y)).distance(Point2::new(record.true_x_m, record.true_y_m));
+            is_here |= node == record.nearest_node.to_string() || distance < 1.0;
+            sum += number(probability);
+        }
+        assert_eq!(is_here, record.is_truth_named, "{record:?}");
+        assert!(sum <= 1.01, "{rivals}");
+        named[usize::from(is_here)] += 1;
+    }
+    assert!(named[1] > 0, "{named:?}");
+}
+
+#[test]
+fn a_robot_without_a_compass_tells_its_localiser_no_heading() {
+    let mut scenario = small_scenario();
+    scenario.uncertainty.compass.available = false;
+    let sites = office_sites(&scenario);
+    let watch = |look: &LookEvent<'_>| assert_eq!(look.compass, None);
+    let record = replay(&sites.all()[0], &sites.settings()[0], 0, None, watch).expect("the map can be learned");
+    assert_eq!((record.outcome, record.is_success), (Outcome::Error, false));
+    assert!(record.message.is_some_and(|message| message.contains("needs a compass")));
 }
 
 #[test]

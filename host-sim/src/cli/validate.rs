@@ -296,14 +296,16 @@ fn total_table(rows: &[ValidationRow]) -> Table {
         "looks",
         "calibration",
     ]);
-    for ValidationRow { row, total, .. } in rows {
+    for ValidationRow { row, total, worlds, .. } in rows {
         let percent = |rate: f64| format!("{:.2} %", 100.0 * rate);
         let rate = |share: &Share| share.rate.map_or_else(String::new, percent);
         let worst = total.worst_world.as_deref().zip(total.worst_success_rate);
         let (low, high) = (100.0 * total.clustered_low, 100.0 * total.clustered_high);
+        // Of one world nothing can be said of others.
+        let interval = if worlds.len() > 1 { format!(" [{low:.2}, {high:.2}]") } else { String::new() };
         table.add_row([
             row.clone(),
-            total.mean_success_rate.map_or_else(String::new, |mean| format!("{} [{low:.2}, {high:.2}]", percent(mean))),
+            total.mean_success_rate.map_or_else(String::new, |mean| percent(mean) + &interval),
             worst.map_or_else(String::new, |(world, rate)| format!("{} {world}", percent(rate))),
             rate(&total.answers.coverage),
             share(&total.answers.false_accepts),

@@ -159,7 +159,8 @@ fn round_up(count: u32) -> u32 {
 #[must_use]
 pub fn reliability_chart(series: usize, bins: &[ReliabilityBin]) -> SVG {
     let axes = Axes { left: 52.0, top: 14.0, width: 300.0, height: 300.0 };
-    let mut chart = drawing(372.0, 362.0).add(axes.rates_grid());
+    // Beside few others it would be drawn as wide as the page.
+    let mut chart = drawing(372.0, 362.0).set("style", "max-width:372px").add(axes.rates_grid());
     for tenths in [0.0, 0.2, 0.4, 0.6, 0.8, 1.0] {
         chart.append(text("middle", (axes.x(tenths), axes.y(0.0) + 18.0), format!("{:.0} %", 100.0 * tenths)));
     }

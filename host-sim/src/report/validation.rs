@@ -46,7 +46,8 @@ pub struct WorldLine {
 pub struct TotalLine {
     /// Mean over worlds of the success rate, a fraction, each world alike; none without trials.
     pub mean_success_rate: Option<f64>,
-    /// Lower end of its 95 % interval over worlds, a fraction; see [`clustered_interval`].
+    /// Lower end of its 95 % interval over worlds, a fraction: [`clustered_interval`], and never narrower than Wilson's of
+    /// all trials, because worlds that all happen to have the same rate prove no certainty.
     pub clustered_low: f64,
     /// Upper end of its 95 % interval over worlds, a fraction.
     pub clustered_high: f64,
@@ -96,7 +97,9 @@ fn validation_row(runs: &[(String, RunResults)], index: usize, name: &str, start
 fn total_line(start: Start, worlds: &[WorldLine], records: &[&TrialRecord]) -> TotalLine {
     let rates: Vec<f64> = worlds.iter().filter_map(|world| world.success.rate).collect();
     let clustered = clustered_interval(&rates);
-    let (clustered_low, clustered_high) = clustered.map_or((0.0, 1.0), |(_, interval)| interval);
+    let success = Share::of(records.iter().map(|record| record.is_success));
+    let (low, high) = clustered.map_or((0.0, 1.0), |(_, interval)| interval);
+    let (clustered_low, clustered_high) = (low.min(success.low), high.max(success.high));
     let with_rate = worlds.iter().filter_map(|world| Some((world, world.success.rate?)));
     let worst = with_rate.min_by(|(_, a), (_, b)| a.total_cmp(b));
     let looks: f64 = records.iter().map(|record| f64::from(record.looks)).sum();
@@ -106,7 +109,7 @@ fn total_line(start: Start, worlds: &[WorldLine], records: &[&TrialRecord]) -> T
         clustered_high,
         worst_world: worst.map(|(world, _)| world.world.clone()),
         worst_success_rate: worst.map(|(_, rate)| rate),
-        success: Share::of(records.iter().map(|record| record.is_success)),
+        success,
         answers: AnswerFigures::new(start, records),
         mean_looks: looks / records.len().max(1) as f64,
         errors: worlds.iter().map(|world| world.errors).sum(),
@@ -234,6 +237,17 @@ pub(super) mod tests {
             );
             assert_eq!((row.total.success.of, row.total.answers.coverage.of), (120, 120));
             assert!(row.total.clustered_low <= rates[1] && row.total.clustered_high >= rates[0]);
+        }
+    }
+
+    #[test]
+    fn worlds_that_all_have_the_same_rate_prove_no_certainty() {
+        let mut runs = two_worlds();
+        runs[1] = ("hall".to_owned(), runs[0].1.clone());
+        for row in validation(&runs) {
+            assert!(
+                row.total.clustered_low <= row.total.success.low && row.total.clustered_high >= row.total.success.high
+            );
         }
     }
 

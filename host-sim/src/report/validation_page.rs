@@ -16,7 +16,7 @@ pub fn validation_page(rows: &[ValidationRow], runs: &[(String, RunResults)], fo
     let scenario = runs.first().map_or("", |(_, first)| first.scenario.name.as_str());
     let trials: usize = runs.iter().map(|(_, results)| results.records.len()).sum();
     let worlds: Vec<&str> = runs.iter().map(|(world, _)| world.as_str()).collect();
-    let subtitle = format!("{trials} trials in {} worlds: {}", worlds.len(), worlds.join(", "));
+    let subtitle = format!("{trials} trials in {}", worlds.join(", "));
     let body = html! {
         (together(rows))
         @for (series, row) in rows.iter().enumerate() { (row_section(series, row)) }
@@ -32,9 +32,9 @@ fn together(rows: &[ValidationRow]) -> Markup {
         p.note {
             "Success: right answers of all trials; \"can't tell\" is a failure, but where starts are unlearned it alone is right. The "
             "mean counts each world alike; its 95 % interval is Student's over the rates of the worlds (cluster-level analysis, Donner and "
-            "Klar 2000), because trials of one world are more alike than trials of two. The other intervals are Wilson's, of all trials "
-            "taken as one world's. False accepts: wrong answers of all answers (unlearned: answers of all trials). Or named: right, or the "
-            "truth among the rivals named."
+            "Klar 2000), because trials of one world are more alike than trials of two, and never narrower than Wilson's of all trials. "
+            "The other intervals are Wilson's, of all trials taken as one world's. False accepts: wrong answers of all answers (unlearned: "
+            "answers of all trials). Or named: right, or the truth among the rivals named."
         }
         div.wide { table {
             (head("row", true))
@@ -42,7 +42,9 @@ fn together(rows: &[ValidationRow]) -> Markup {
                 td { (key(series)) (row.row) }
                 td.strong { @if let Some(mean) = total.mean_success_rate {
                     (format!("{:.2} %", 100.0 * mean)) " "
-                    span.quiet { (format!("[{:.2}, {:.2}]", 100.0 * total.clustered_low, 100.0 * total.clustered_high)) }
+                    @if row.worlds.len() > 1 {
+                        span.quiet { (format!("[{:.2}, {:.2}]", 100.0 * total.clustered_low, 100.0 * total.clustered_high)) }
+                    }
                 } }
                 td { @if let (Some(world), Some(rate)) = (&total.worst_world, total.worst_success_rate) {
                     (format!("{:.2} %", 100.0 * rate)) " " span.quiet { (world) }

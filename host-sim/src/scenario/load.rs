@@ -12,7 +12,8 @@ use toml::de::{DeTable, DeValue};
 const MAX_FILE_BYTES: u64 = 1 << 20;
 
 impl Scenario {
-    /// The scenario called `name` (a file, else a bundled one) with `settings` (`key=value`) on top, checked.
+    /// The scenario called `name` (a bundled one, else a file) with `settings` (`key=value`) on top, checked. A file called
+    /// like a bundled scenario is meant by `./edgeloc`: what else lies in the current folder changes no run.
     ///
     /// Relative paths of a world and its view-dependency file count from the scenario file's folder, those of a setting
     /// from the current one; they are made absolute.
@@ -22,10 +23,8 @@ impl Scenario {
     pub fn load(name: &str, settings: &[String]) -> Result<Self, ScenarioError> {
         let path = Path::new(name);
         let (origin, text, mut scenario) = match Preset::find(name) {
-            Some(preset) if !path.is_file() => {
-                (preset.name, preset.text.to_owned(), Self::parse(preset.text, preset.name)?)
-            }
-            _ => {
+            Some(preset) => (preset.name, preset.text.to_owned(), Self::parse(preset.text, preset.name)?),
+            None => {
                 let text = read_limited(name)?;
                 let mut scenario = Self::parse(&text, name)?;
                 scenario.complete_from_path(path, &text);
