@@ -69,6 +69,7 @@ fn the_help_of_every_verb_has_an_example() {
         &["sources"],
         &["figures"],
         &["optimise"],
+        &["validate"],
     ] {
         let help = done(folder.path(), &[verb, &["--help"]].concat());
         let example = format!("  edgeloc {}", verb.join(" "));
@@ -133,6 +134,14 @@ fn a_world_path_that_is_not_text_is_refused_before_anything_runs() {
         assert_eq!(output.status.code(), Some(1), "{stderr}");
         assert!(stderr.contains("world.file") && stderr.contains("UTF-8"), "{stderr}");
     }
+}
+
+#[test]
+fn a_file_called_like_a_bundled_scenario_is_not_taken_for_it() {
+    let folder = folder();
+    std::fs::write(folder.path().join("smoke"), b"\x7fELF\xff").expect("written");
+    assert!(done(folder.path(), &["run", "smoke", "--print-config"]).contains("name = \"smoke\""));
+    assert!(failed(folder.path(), &["run", "./smoke"], 1).contains("UTF-8"));
 }
 
 #[test]
@@ -564,6 +573,40 @@ fn an_interrupted_run_says_how_to_go_on_and_ends_with_the_same_bytes() {
     assert!(!journal.exists());
     assert!(failed(path, &["run", "--resume", "runs/latest"], 1).contains("is finished"));
     failed(path, &["run", "smoke", "--resume", "runs/latest"], 2);
+}
+
+#[test]
+fn a_validation_tells_of_each_world_and_of_all_and_goes_on_where_it_was_interrupted() {
+    let folder = folder();
+    let path = folder.path();
+    done(path, &["world", "generate", "--seed", "3"]);
+    let few = ["--offices", "2", "--trials", "3", "--nodes", "6", "--set", "localizer.max_looks=1"];
+    let arguments = [&["validate", "office-3.edgeworld", "--strata", "anywhere,near"][..], &few].concat();
+    let printed = json(&done(path, &[&arguments[..], &["--format", "json"]].concat()));
+    assert_documented(path, &["validate"], &printed);
+    let rows = printed["rows"].as_array().expect("rows");
+    assert_eq!(rows.iter().map(|row| row["row"].as_str()).collect::<Vec<_>>(), [Some("anywhere"), Some("near")]);
+    for row in rows {
+        let worlds: Vec<_> = row["worlds"].as_array().expect("worlds").iter().map(|world| &world["world"]).collect();
+        assert_eq!(worlds, ["office-2", "office-3"]);
+        assert_eq!(row["total"]["success"]["of"], 6);
+    }
+    let at = |file: &str| path.join("runs/latest").join(file);
+    let table = std::fs::read_to_string(at("validation.csv")).expect("a table");
+    assert_eq!(table.lines().count(), 1 + 2 * 3);
+    assert!(std::fs::read_to_string(at("validation.html")).is_ok_and(|page| page.contains("All worlds together")));
+    done(path, &["replay", "runs/latest/office-3", "--trial", "1"]);
+
+    // One world had not ended and nothing of all of them was written.
+    std::fs::remove_dir_all(at("office-3")).expect("a folder");
+    std::fs::remove_file(at("validation.csv")).expect("a file");
+    let words = done(path, &["validate", "--resume", "runs/latest"]);
+    assert!(words.contains("office-2, near: ") && words.contains("mean success"), "{words}");
+    assert_eq!(std::fs::read_to_string(at("validation.csv")).expect("a table"), table);
+
+    let twice = failed(path, &["validate", "office-3.edgeworld", "./office-3.edgeworld"], 1);
+    assert!(twice.contains("office-3") && twice.contains("once"), "{twice}");
+    assert!(failed(path, &["validate", "--resume", "."], 1).contains("holds no validation"));
 }
 
 #[test]

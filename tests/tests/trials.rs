@@ -1,10 +1,11 @@
 //! Kidnapped-robot trials end to end: the same rows by every way, the certain case, and a table of a small sweep.
 
-use edgeloc::geometry::{Angle, Heading};
+use edgeloc::geometry::{Angle, Heading, Point2};
 use edgeloc_sim::monte_carlo::{
-    LookEvent, Outcome, Part, RunOutcome, Shard, Site, Sites, TimedTrial, TrialRecord, TruePose, replay, run, run_part,
+    LookEvent, Outcome, Part, RunOutcome, Shard, Site, Sites, TimedTrial, TrialRecord, TruePose, UnknownKind, replay,
+    run, run_part,
 };
-use edgeloc_sim::scenario::{Row, Scenario, Setting, Start};
+use edgeloc_sim::scenario::{LocalizerKind, Row, Scenario, Setting, Start};
 use edgeloc_sim::uncertainty::Sources;
 use edgeloc_sim::world::WireframeWorld;
 use edgeloc_sim::world::office::{self, OfficeOptions};
@@ -150,6 +151,91 @@ fn rows_that_share_their_work_give_what_each_gives_alone() {
         assert_eq!(start("anywhere", trial), start("anywhere, nodes", trial));
         assert_ne!(start("plain", trial), start("wider", trial));
     }
+}
+
+#[test]
+fn where_nothing_was_learned_only_i_cannot_tell_is_right() {
+    let mut scenario = small_scenario();
+    scenario.localizer.kind = LocalizerKind::Edgeloc;
+    scenario.localizer.max_looks = 1;
+    scenario.rows = vec![
+        Row::new("unlearned", Start::Unlearned, true).with("learning.withheld", 0.3),
+        Row::new("learned", Start::Anywhere, true).with("learning.withheld", 0.3),
+        Row::new("all learned", Start::Anywhere, true),
+    ];
+    let sites = office_sites(&scenario);
+    let (part, whole) = (sites.of_row(0), sites.of_row(2));
+    assert!(part.nodes.len() < 16 && part.nodes.iter().all(|node| whole.nodes.contains(node)), "{:?}", part.nodes);
+    let records = run_on(2, &sites).records;
+    let mut outcomes = [0; 2];
+    for record in &records {
+        let start = Point2::new(record.true_x_m, record.true_y_m);
+        match record.row.as_str() {
+            "unlearned" => {
+                assert!(part.withheld.contains(&part.free_space, start), "{record:?}");
+                assert_eq!(record.is_success, record.outcome == Outcome::Unknown);
+                assert_eq!(record.is_success, record.answered_node.is_none());
+                outcomes[usize::from(record.is_success)] += 1;
+            }
+            "learned" => {
+                assert!(!part.withheld.contains(&part.free_space, start), "{record:?}");
+                assert!(!record.is_success || record.answered_node.is_some());
+            }
+            _ => {}
+        }
+    }
+    assert!(outcomes[1] > 0, "{outcomes:?}");
+}
+
+#[test]
+fn without_an_answer_the_rivals_are_named_and_the_record_says_whether_the_truth_is_among_them() {
+    let mut scenario = small_scenario();
+    scenario.localizer.kind = LocalizerKind::Edgeloc;
+    scenario.localizer.max_looks = 1;
+    // Never sure, so that every scene that shows enough ends with rivals.
+    scenario.localizer.verification.confidence = 100.0;
+    scenario.rows = vec![Row::new("anywhere", Start::Anywhere, true)];
+    let records = run_on(2, &office_sites(&scenario)).records;
+    let mut named = [0; 2];
+    for record in &records {
+        assert_eq!((record.outcome, record.is_success, record.is_near_tie), (Outcome::Unknown, false, false));
+        let is_rivalry = record.unknown_kind == Some(UnknownKind::Indistinguishable);
+        assert_eq!(record.rivals.is_some(), is_rivalry, "{record:?}");
+        let Some(rivals) = &record.rivals else { continue };
+        let (mut is_here, mut sum) = (false, 0.0);
+        for rival in rivals.split(' ') {
+            let (node, rest) = rival.split_once('@').expect("a node at a place");
+            let (place, probability) = rest.split_once(':').expect("a place with its probability");
+            let (x, y) = place.split_once(',').expect("x and y");
+            let number = |text: &str| text.parse::<f32>().expect("a number");
+            let distance = Point2::new(number(x), number(y)).distance(Point2::new(record.true_x_m, record.true_y_m));
+            is_here |= node == record.nearest_node.to_string() || distance < 1.0;
+            sum += number(probability);
+        }
+        assert_eq!(is_here, record.is_truth_named, "{record:?}");
+        assert!(sum <= 1.01, "{rivals}");
+        named[usize::from(is_here)] += 1;
+    }
+    assert!(named[1] > 0, "{named:?}");
+}
+
+#[test]
+fn a_robot_without_a_compass_tells_its_localiser_no_heading() {
+    let mut scenario = small_scenario();
+    scenario.uncertainty.compass.available = false;
+    let sites = office_sites(&scenario);
+    let watch = |look: &LookEvent<'_>| assert_eq!(look.compass, None);
+    let record = replay(&sites.all()[0], &sites.settings()[0], 0, None, watch).expect("the map can be learned");
+    assert_eq!((record.outcome, record.is_success), (Outcome::Error, false));
+    assert!(record.message.is_some_and(|message| message.contains("needs a compass")));
+}
+
+#[test]
+fn unlearned_starts_need_a_part_wide_enough_to_be_far_from_every_node() {
+    let mut scenario = small_scenario();
+    scenario.rows = vec![Row::new("unlearned", Start::Unlearned, true).with("learning.withheld", 0.001)];
+    let error = Sites::prepare(office(), &scenario).expect_err("a part of a few cells").to_string();
+    assert!(error.contains("learning.withheld"), "{error}");
 }
 
 #[test]

@@ -8,7 +8,7 @@ use super::trials::{self, RunArguments, name};
 use clap::Args;
 use miette::Result;
 
-/// Learn the bundled office and put a robot down in it 2000 times: the paper's localiser beside the paper's figure.
+/// Learn the bundled office and put a robot down in it 1000 times: the paper's localiser and ours, on the same poses.
 #[derive(Debug, Default, Args)]
 #[command(after_help = format!(
     "Examples:\n  edgeloc demo\n  edgeloc demo --trials 900 --threads 4\n  edgeloc demo --seed 2 --format json\n\n\
@@ -26,13 +26,14 @@ pub(super) struct Demo {
 
 impl Demo {
     pub(super) fn execute(self) -> Result<()> {
-        let Some(scenario) = self.changes.load("paper")? else { return Ok(()) };
+        let Some(scenario) = self.changes.load("demo")? else { return Ok(()) };
         if self.format == Format::Text {
             console::print(&format!(
                 "A robot wakes up somewhere in an office that it has learned before: {} nodes of {} views each.\n\
-                 It looks around, matches the straight edges it sees, and says at which node it is; {} times a row.\n\
-                 near: within {} m of a node; anywhere: anywhere in free space. Right is one of the two nearest nodes.\n",
-                scenario.learning.nodes, scenario.learning.views, scenario.trials, scenario.near_radius_m,
+                 It looks around and says where it is by the straight edges it sees; {} times anywhere in free space, on the\n\
+                 same poses and noise with the paper's localiser, which names a node, and with ours, which answers with a\n\
+                 pose or says that it can't tell. Right is one of the two nearest nodes.\n",
+                scenario.learning.nodes, scenario.learning.views, scenario.trials,
             ))?;
         }
         let (folder, results) = trials::run(scenario, &self.how)?;
@@ -40,6 +41,7 @@ impl Demo {
             return console::print_json(&RunPrinted { folder: folder.path(), summary: &results.summary });
         }
         console::print(&summary_table::headline(&results).to_string())?;
+        console::print(&summary_table::answers(&results).to_string())?;
         console::print(&summary_table::remarks(&results))?;
         let report = folder.path().join("report.html");
         let folder = name(folder.path());
@@ -50,7 +52,8 @@ impl Demo {
              Watch its worst trial:       {worst}\n\
              Draw the office:             edgeloc world generate --seed 1 && edgeloc world view office-1.edgeworld\n\
              Try your own building:       edgeloc world import BUILDING.world\n\
-             Change anything:             edgeloc run paper --print-config > my.toml\n\
+             Validate in many worlds:     edgeloc validate --trials 100\n\
+             Change anything:             edgeloc run edgeloc --print-config > my.toml\n\
              (edgeloc is target/release/edgeloc here, or cargo run --release -- VERB)",
             report.display()
         ))

@@ -46,7 +46,7 @@ impl Merge {
         let world = unchanged_world(&results.scenario, &results.manifest);
         let world = world.map_err(|error| console::remark(&format!("the report goes without the world: {error}"))).ok();
         let free = world.as_ref().and_then(|world| FreeSpace::of(world, &FreeSpaceOptions::default()).ok());
-        let free = free.as_ref().map(worlds::free_cells);
+        let free = free.as_ref().map(|free| worlds::free_cells_of_run(free, &results.scenario));
 
         let date = jiff::Zoned::now().strftime("%Y-%m-%d").to_string();
         let folder = RunFolder::create(&self.out, &date, &results.scenario.name)?;
@@ -60,6 +60,7 @@ impl Merge {
             return console::print_json(&RunPrinted { folder: folder.path(), summary: &results.summary });
         }
         console::print(&summary_table::headline(&results).to_string())?;
+        console::print(&summary_table::answers(&results).to_string())?;
         console::print(&format!("report: {}", folder.path().join("report.html").display()))
     }
 }

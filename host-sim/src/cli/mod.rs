@@ -25,6 +25,7 @@ mod scenario_args;
 mod sources;
 mod summary_table;
 mod trials;
+mod validate;
 mod world;
 mod worlds;
 
@@ -45,10 +46,11 @@ struct Arguments {
 
 const EXAMPLES: &str = "\
 Examples:
-  edgeloc                                        the demo: learn the bundled office, 2000 trials, a report
+  edgeloc                                        the demo: both localisers in the bundled office, a report
   edgeloc run smoke                              does everything work? a few seconds
   edgeloc world import small_house.world         make a world of a building
   edgeloc run paper --world small_house.edgeworld
+  edgeloc validate                               the default localiser in five worlds, one table
   edgeloc replay runs/latest --trial 17          one trial of a run, look by look
   edgeloc compare runs/ONE runs/OTHER            is the one setting better? a paired test
 
@@ -74,6 +76,7 @@ enum Verb {
     Power(power::Power),
     Sources(sources::Sources),
     Optimise(optimise::Optimise),
+    Validate(validate::Validate),
 }
 
 /// Reads the command line and does what it asks.
@@ -97,6 +100,7 @@ pub(crate) fn main() -> ExitCode {
         Verb::Power(verb) => verb.execute(),
         Verb::Sources(verb) => verb.execute(),
         Verb::Optimise(verb) => verb.execute(),
+        Verb::Validate(verb) => verb.execute(),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

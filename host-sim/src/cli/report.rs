@@ -49,13 +49,16 @@ impl Report {
             }
         };
         let free = world.as_ref().and_then(|world| FreeSpace::of(world, &FreeSpaceOptions::default()).ok());
-        let free = free.as_ref().map(worlds::free_cells);
+        let free = free.as_ref().map(|free| worlds::free_cells_of_run(free, &results.scenario));
         let report = page(&results, world.as_ref(), free.as_ref(), &name(folder.path()));
         let report = folder.write("report.html", report.as_bytes())?;
         if let Some(path) = &self.plan {
             let row = find_setting(&results.scenario, self.row.as_deref())?.row;
             let nodes = results.scenario.rows.iter().position(|other| other.name == row.name).unwrap_or(0);
-            let plan = FloorPlan::new(world.as_ref(), free.as_ref(), &results.nodes[nodes]);
+            let mut plan = FloorPlan::new(world.as_ref(), free.as_ref(), &results.nodes[nodes]);
+            if let Some(free) = &free {
+                plan = plan.with_withheld(free, free.withheld.get(nodes).map_or(&[], Vec::as_slice));
+            }
             let records = results.records.iter().filter(|record| record.row == row.name);
             console::write_file(path, to_svg_file(trials_plan(&plan, records)).as_bytes())?;
         }
@@ -63,6 +66,7 @@ impl Report {
             return console::print_json(&RunPrinted { folder: folder.path(), summary: &results.summary });
         }
         console::print(&summary_table::headline(&results).to_string())?;
+        console::print(&summary_table::answers(&results).to_string())?;
         console::print(&summary_table::remarks(&results))?;
         console::print(&format!("report written: {}", report.display()))
     }

@@ -16,8 +16,12 @@ pub(super) const JSON_FIELDS: &str = "\
 folder, and summary = what summary.json holds (rates are fractions of 1): scenario, free_area_m2, paper_rate, paper_interval \
 (low, high), rows. Each of the rows: row, start, polarity, nodes, map (mean_bytes, mean_segments_per_node, \
 free_m2_per_node), chance_rate of blind guessing, trials, successes, success_rate (null without trials) with its 95 % Wilson interval success_rate_low \
-to success_rate_high, unknown (can't tell) and errors in trials, mean_looks, median_looks, mean_segments_per_look, \
-mean_nearest_node_distance_m, median_answer_distance_m (null without answers)";
+to success_rate_high, answers, unknown (can't tell) and errors in trials, mean_looks, median_looks, mean_segments_per_look, \
+mean_nearest_node_distance_m, median_answer_distance_m (null without answers). answers: coverage (trials answered), false_accepts \
+(wrong answers, of all answers; where starts are unlearned answers of all trials), truth_named (trials right, or with the truth \
+among the rivals named), each with count, of, rate, low and high of the interval; near_ties (answers within 0.5 m whose node is not one \
+of the two nearest), pose_error_median_m, pose_error_95_m, pose_error_99_m, heading_error_median_deg and calibration_error of \
+the probabilities stated (null without poses or probabilities)";
 
 /// Arguments that say what to run, which the folder of an interrupted run knows.
 const NOT_WITH_RESUME: [&str; 9] =
@@ -75,6 +79,7 @@ impl Run {
             return console::print_json(&RunPrinted { folder: folder.path(), summary: &results.summary });
         }
         console::print(&summary_table::headline(&results).to_string())?;
+        console::print(&summary_table::answers(&results).to_string())?;
         console::print(&summary_table::remarks(&results))?;
         console::print(&format!("report: {}", folder.path().join("report.html").display()))?;
         if let Some(shard) = results.manifest.shard {

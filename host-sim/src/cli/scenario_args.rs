@@ -10,7 +10,7 @@ use std::path::PathBuf;
 /// Which scenario, and what to change in it.
 #[derive(Debug, Clone, Args)]
 pub(super) struct ScenarioArguments {
-    /// Scenario file (.toml), or a bundled scenario: paper, edgeloc, smoke, figures, paper-scale.
+    /// Scenario file (.toml), or a bundled scenario: paper, edgeloc, demo, stress, ablation, smoke, figures, paper-scale.
     #[arg(default_value = "paper")]
     scenario: String,
     #[command(flatten)]

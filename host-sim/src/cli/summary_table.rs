@@ -2,7 +2,7 @@
 
 use super::console;
 use comfy_table::{CellAlignment, Table};
-use edgeloc_sim::report::{RunResults, replay_command, worst_trials};
+use edgeloc_sim::report::{AnswerFigures, RunResults, Share, replay_command, worst_trials};
 
 /// Maps told of in a few lines; a study of many is read from its summary.
 const LISTED_MAPS: usize = 3;
@@ -45,6 +45,56 @@ pub(super) fn headline(results: &RunResults) -> Table {
         }
     }
     table
+}
+
+/// What the answers of each row are worth.
+pub(super) fn answers(results: &RunResults) -> Table {
+    let mut table = console::table(&[
+        "row",
+        "answered",
+        "false accepts [95 % interval]",
+        "right or named",
+        "position error 50/95/99 %",
+        "heading",
+        "near ties",
+    ]);
+    for row in &results.summary.rows {
+        let answers = &row.answers;
+        let rate = |share: &Share| share.rate.map_or_else(String::new, |rate| format!("{:.1} %", 100.0 * rate));
+        table.add_row([
+            row.row.clone(),
+            rate(&answers.coverage),
+            share(&answers.false_accepts),
+            rate(&answers.truth_named),
+            position_errors(answers),
+            answers.heading_error_median_deg.map_or_else(String::new, |error| format!("{error:.2} deg")),
+            answers.near_ties.to_string(),
+        ]);
+    }
+    for column in [1, 3, 4, 5, 6] {
+        if let Some(column) = table.column_mut(column) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    table
+}
+
+/// A small share with its interval.
+pub(super) fn share(share: &Share) -> String {
+    share.rate.map_or_else(
+        || "no answers".to_owned(),
+        |rate| format!("{:.2} % [{:.2}, {:.2}]", 100.0 * rate, 100.0 * share.low, 100.0 * share.high),
+    )
+}
+
+/// Median, 95 % and 99 % of the position error.
+pub(super) fn position_errors(answers: &AnswerFigures) -> String {
+    match (answers.pose_error_median_m, answers.pose_error_95_m, answers.pose_error_99_m) {
+        (Some(median), Some(most), Some(nearly_all)) => {
+            format!("{:.1}/{:.1}/{:.1} cm", 100.0 * median, 100.0 * most, 100.0 * nearly_all)
+        }
+        _ => String::new(),
+    }
 }
 
 /// Map, time and what is slow, in a few lines.

@@ -24,7 +24,7 @@ pub(super) struct RunArguments {
     pub(super) threads: Option<u16>,
     /// Folder that gets a folder of this run.
     #[arg(long, value_name = "FOLDER", default_value = "runs")]
-    out: PathBuf,
+    pub(super) out: PathBuf,
 }
 
 impl Default for RunArguments {
@@ -61,22 +61,36 @@ pub(super) fn run_shard(
     arguments: &RunArguments,
     shard: Option<Shard>,
 ) -> Result<(RunFolder, RunResults)> {
+    let folder = |name: &str| {
+        let date = jiff::Zoned::now().strftime("%Y-%m-%d").to_string();
+        let part = shard.map_or_else(String::new, |shard| format!("-shard-{}-of-{}", shard.index, shard.count));
+        let folder = RunFolder::create(&arguments.out, &date, &format!("{name}{part}"))?;
+        if let Err(error) = folder.link_latest() {
+            console::remark(&format!("the run goes on, but {error}"));
+        }
+        Ok(folder)
+    };
+    run_in(scenario, arguments.threads, shard, folder)
+}
+
+/// Runs a scenario, or a shard of it, in the folder that `make_folder` makes for its name once the world is ready.
+pub(super) fn run_in(
+    scenario: Scenario,
+    threads: Option<u16>,
+    shard: Option<Shard>,
+    make_folder: impl FnOnce(&str) -> Result<RunFolder>,
+) -> Result<(RunFolder, RunResults)> {
     let (started, start) = (jiff::Timestamp::now(), Instant::now());
     let trials = shard.map(|shard| shard.trials(&scenario)).transpose().into_diagnostic()?;
-    let pool = thread_pool(arguments.threads)?;
+    let pool = thread_pool(threads)?;
     let sites = pool.install(|| prepare_rows(worlds::open(&scenario)?, &scenario))?;
     let world = WorldFacts::new(&sites.all()[0].world, &scenario.world);
     let trials = trials.unwrap_or(0..sites.trials());
     let count = monte_carlo::count_trials(sites.settings(), &trials);
     let manifest = Manifest::new(&scenario, world, pool.current_num_threads(), shard, count, started);
 
-    let date = jiff::Zoned::now().strftime("%Y-%m-%d").to_string();
-    let part = shard.map_or_else(String::new, |shard| format!("-shard-{}-of-{}", shard.index, shard.count));
-    let folder = RunFolder::create(&arguments.out, &date, &format!("{}{part}", scenario.name))?;
+    let folder = make_folder(&scenario.name)?;
     folder.begin(&manifest, &scenario)?;
-    if let Err(error) = folder.link_latest() {
-        console::remark(&format!("the run goes on, but {error}"));
-    }
     Running { pool, sites, folder, manifest, scenario, trials, prepare_time: start.elapsed() }.finish()
 }
 
@@ -159,7 +173,7 @@ impl Running {
             records,
             scenario,
         };
-        let free = worlds::free_cells(&site.free_space);
+        let free = worlds::free_cells_of_run(&site.free_space, &results.scenario);
         let report = page(&results, Some(&site.world), Some(&free), &name(folder.path()));
         folder.write("report.html", report.as_bytes())?;
         folder.write_results(&results, &look_times)?;

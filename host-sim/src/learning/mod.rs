@@ -9,6 +9,7 @@ mod learn;
 mod node_placement;
 mod node_views;
 mod place_nodes;
+mod withheld;
 
 pub use calibrated_rig::CalibratedRig;
 pub use calibration_bench::{CalibrationBench, FAR_DISPARITY_PX, PRIOR, SimulatedCalibration, bench_prior};
@@ -19,3 +20,4 @@ pub use learn::{LearnedNode, learn, learn_nodes, write_map};
 pub use node_placement::{NodePlacement, NodePlacementError, random_start};
 pub use node_views::NodeViews;
 pub use place_nodes::{PlaceNodesError, place_nodes};
+pub use withheld::{UNLEARNED_WAY_M, Withheld};

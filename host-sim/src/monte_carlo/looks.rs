@@ -48,7 +48,7 @@ impl<'s> Looks<'s> {
     }
 
     /// What the compass tells in the `look`-th look, from 0, with the optical axis along `heading`.
-    pub(super) fn compass_reading(&self, look: usize, heading: Heading, sources: &Sources) -> HeadingPrior {
+    pub(super) fn compass_reading(&self, look: usize, heading: Heading, sources: &Sources) -> Option<HeadingPrior> {
         sources.compass_reading(heading, &self.noise_key(look))
     }
 

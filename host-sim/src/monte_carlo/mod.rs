@@ -13,7 +13,7 @@ mod statistics;
 mod trial;
 
 pub use look_images::{LookImages, SourceEffect};
-pub use record::{Outcome, TrialRecord};
+pub use record::{Outcome, TrialRecord, UnknownKind};
 pub use replay::{Replay, replay};
 pub use runner::{Part, RunError, RunOutcome, TimedTrial, run, run_part};
 pub use shard::{Shard, ShardError, count_trials};
@@ -21,6 +21,7 @@ pub use site::{Site, SiteError};
 pub use sites::{PrepareError, Sites};
 pub use start::{TruePose, draw_start};
 pub use statistics::{
-    PairedCounts, SuccessRate, difference_interval, mcnemar, paired_difference_interval, success_interval,
+    PairedCounts, SuccessRate, clustered_interval, difference_interval, mcnemar, paired_difference_interval,
+    success_interval,
 };
 pub use trial::LookEvent;

@@ -14,6 +14,18 @@ pub enum Outcome {
     Error,
 }
 
+/// Why a trial ended without an answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum UnknownKind {
+    /// No look showed enough to compare.
+    SceneTooPoor,
+    /// What was seen agrees with no place of the map.
+    OutsideMap,
+    /// Several places agree with it.
+    Indistinguishable,
+}
+
 /// One kidnapped-robot trial: where the robot truly was, what it answered and how it got there.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TrialRecord {
@@ -48,8 +60,19 @@ pub struct TrialRecord {
     pub heading_error_deg: Option<f32>,
     /// Probability that the answer is right as the localiser has it, if it states one.
     pub probability: Option<f32>,
-    /// Whether the answered node is one of the two nearest (the paper's definition).
+    /// Whether the trial ended right: the answered node is one of the two nearest (the paper's definition), so that "I
+    /// can't tell" is a failure; but that alone is right where the robot started unlearned, at a place that no map knows.
     pub is_success: bool,
+    /// Whether the trial ended right, or without an answer but with the truth among the rivals named: one of them within
+    /// 1 m of the true position, or naming the nearest node.
+    pub is_truth_named: bool,
+    /// Whether the position answered lies within 0.5 m of the true one though the node is not one of the two nearest.
+    pub is_near_tie: bool,
+    /// Why there is no answer, if there is none.
+    pub unknown_kind: Option<UnknownKind>,
+    /// The rivals named instead of an answer, the likeliest first: `node@x,y:probability`, positions in metres, with
+    /// blanks between them.
+    pub rivals: Option<String>,
     /// Looks taken.
     pub looks: u32,
     /// Segments of all looks together that entered the matching.

@@ -24,11 +24,17 @@ impl<'s> Replay<'s> {
     /// the record is then the one of the run.
     ///
     /// # Errors
-    /// When the map can't be learned.
+    /// When the map can't be learned, or the setting can't start anywhere.
     pub fn new(site: &'s Site, setting: &'s Setting, trial: u32, start: Option<TruePose>) -> Result<Self, RunError> {
         let scenario = &setting.scenario;
         let map = trial / scenario.trials_per_map;
-        let start = start.unwrap_or_else(|| draw_start(site, scenario, setting.row.start, trial));
+        let start = match start {
+            Some(start) => start,
+            None => {
+                site.check_start(setting.row.start)?;
+                draw_start(site, scenario, setting.row.start, trial)
+            }
+        };
         let map_bytes = site.learn_map(scenario, map)?;
         Ok(Self { site, setting, trial, map, start, map_bytes })
     }

@@ -9,7 +9,7 @@
 use super::looks::Looks;
 use super::sites::Sites;
 use super::trial::Trial;
-use super::{TrialRecord, draw_start};
+use super::{SiteError, TrialRecord, draw_start};
 use crate::scenario::Setting;
 use edgeloc::database::{OpenError, TopologicalDatabase, WriteError};
 use edgeloc::localize::Localizer;
@@ -172,4 +172,7 @@ pub enum RunError {
     /// The map just learned does not open.
     #[error("the learned map does not open: {0}")]
     Open(#[from] OpenError),
+    /// The site has no place of the kind that trials start in.
+    #[error(transparent)]
+    Start(#[from] SiteError),
 }

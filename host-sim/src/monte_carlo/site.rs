@@ -1,7 +1,9 @@
 //! What all trials of a run share: the building, the nodes in it and what a noise-free robot saw from them.
 
-use crate::learning::{self, CalibratedRig, CalibrationBench, NodePlacementError, NodeViews};
-use crate::scenario::Scenario;
+use crate::learning::{
+    self, CalibratedRig, CalibrationBench, NodePlacementError, NodeViews, UNLEARNED_WAY_M, Withheld,
+};
+use crate::scenario::{Scenario, Start};
 use crate::uncertainty::Sources;
 use crate::world::{FreeSpace, FreeSpaceError, FreeSpaceOptions, Occluders, ViewpointVisibility, WireframeWorld};
 use edgeloc::database::WriteError;
@@ -19,8 +21,12 @@ pub struct Site {
     pub free_space: Arc<FreeSpace>,
     /// The robot's stereo rig.
     pub rig: StereoRig,
-    /// Where the nodes are, world frame \[m\].
+    /// Where the learned nodes are, world frame \[m\].
     pub nodes: Vec<Point2>,
+    /// The part of the free space that is not learned.
+    pub withheld: Withheld,
+    /// Centers of the free cells that no map knows, world frame \[m\]; see [`Start::Unlearned`].
+    pub unlearned: Vec<Point2>,
     /// Where the robot's calibrations come from: the same for every set of nodes.
     pub calibration_bench: Arc<CalibrationBench>,
     node_views: Vec<NodeViews>,
@@ -57,9 +63,26 @@ impl Site {
         scenario: &Scenario,
     ) -> Result<Self, SiteError> {
         let node_count = usize::from(scenario.learning.nodes);
-        let nodes = scenario.learning.placement.place(&world, &free_space, node_count, scenario.seed)?;
+        let mut nodes = scenario.learning.placement.place(&world, &free_space, node_count, scenario.seed)?;
+        let withheld = Withheld::grow(&free_space, scenario.learning.withheld, scenario.seed);
+        nodes.retain(|&node| !withheld.contains(&free_space, node));
+        if nodes.is_empty() {
+            return Err(SiteError::NothingLearned { withheld: scenario.learning.withheld });
+        }
+        let unlearned = withheld.unlearned_centers(&free_space, &nodes);
         let node_views = NodeViews::observe_all(&rig, &world, &occluders, &nodes, scenario.learning.views);
-        Ok(Self { world, occluders, free_space, rig, nodes, calibration_bench, node_views })
+        Ok(Self { world, occluders, free_space, rig, nodes, withheld, unlearned, calibration_bench, node_views })
+    }
+
+    /// Whether a robot can be put down so.
+    ///
+    /// # Errors
+    /// When every place of the withheld part is near a learned node.
+    pub fn check_start(&self, start: Start) -> Result<(), SiteError> {
+        if start == Start::Unlearned && self.unlearned.is_empty() {
+            return Err(SiteError::NothingUnlearned);
+        }
+        Ok(())
     }
 
     /// Learns the map, with the `map_index`-th draw of the uncertainty sources: the bytes of a topological database.
@@ -84,10 +107,17 @@ impl Site {
         self.calibration_bench.calibrated_rig(sources, seed, u64::from(map_index))
     }
 
-    /// The density of the nodes: free space for each \[m2\].
+    /// The density of the nodes: free space for each \[m2\], without what is withheld.
     #[must_use]
     pub fn free_m2_per_node(&self) -> f64 {
-        self.free_space.area_m2() / self.nodes.len() as f64
+        self.learned_m2() / self.nodes.len() as f64
+    }
+
+    /// Area of the free space without what is withheld \[m2\].
+    #[must_use]
+    pub fn learned_m2(&self) -> f64 {
+        let cell_m2 = f64::from(self.free_space.cell_m()) * f64::from(self.free_space.cell_m());
+        self.free_space.area_m2() - self.withheld.cell_count() as f64 * cell_m2
     }
 
     /// What can be seen from `position` at camera height.
@@ -119,4 +149,16 @@ pub enum SiteError {
     /// The nodes can't be placed.
     #[error(transparent)]
     Placement(#[from] NodePlacementError),
+    /// All nodes lie in the withheld part.
+    #[error("every node lies in the part that learning.withheld = {withheld} keeps from being learned; withhold less")]
+    NothingLearned {
+        /// The share withheld.
+        withheld: f64,
+    },
+    /// No place is far enough from what is learned.
+    #[error(
+        "no place lies a walk of {UNLEARNED_WAY_M} m from every learned node, so that nobody can start unlearned; withhold \
+         more: learning.withheld"
+    )]
+    NothingUnlearned,
 }

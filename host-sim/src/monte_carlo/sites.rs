@@ -26,7 +26,10 @@ impl Sites {
             sites.push(sites[0].learned_anew(&settings[row].scenario)?);
         }
         let site_of = |row| firsts.iter().position(|&first| first == learns_like(&settings, row)).unwrap_or(0);
-        let site_of_row = (0..settings.len()).map(site_of).collect();
+        let site_of_row: Vec<usize> = (0..settings.len()).map(site_of).collect();
+        for (setting, &site) in settings.iter().zip(&site_of_row) {
+            sites[site].check_start(setting.row.start)?;
+        }
         Ok(Self { settings, sites, site_of_row, trials_per_map: scenario.trials_per_map })
     }
 
@@ -67,12 +70,14 @@ impl Sites {
         self.site_of_row[a] == self.site_of_row[b] && sources(a) == sources(b)
     }
 
-    /// Whether two rows put the robot down at the same poses. Free space is that of the building; what is near depends on
-    /// the nodes.
+    /// Whether two rows put the robot down at the same poses. Free space is that of the building without what is
+    /// withheld; what is near, or far, depends on the nodes.
     pub(super) fn share_pose(&self, a: usize, b: usize) -> bool {
         let radius = |row: usize| self.settings[row].scenario.near_radius_m.to_bits();
+        let withheld = |row: usize| self.settings[row].scenario.learning.withheld.to_bits();
         match (self.settings[a].row.start, self.settings[b].row.start) {
-            (Start::Anywhere, Start::Anywhere) => true,
+            (Start::Anywhere, Start::Anywhere) => withheld(a) == withheld(b),
+            (Start::Unlearned, Start::Unlearned) => self.site_of_row[a] == self.site_of_row[b],
             (Start::Near, Start::Near) => self.site_of_row[a] == self.site_of_row[b] && radius(a) == radius(b),
             _ => false,
         }

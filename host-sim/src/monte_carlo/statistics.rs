@@ -2,8 +2,10 @@
 //!
 //! Wilson's interval holds its level where rates come close to 0 or 1, where the textbook's does not.
 
+mod clustered;
 mod paired;
 
+pub use clustered::clustered_interval;
 pub use paired::{PairedCounts, difference_interval, mcnemar, paired_difference_interval};
 
 use serde::{Deserialize, Serialize};

@@ -1,25 +1,31 @@
 //! One kidnapped-robot trial, from a random pose to a decision. It reads like the paper's Fig. 1(a).
 
 use super::looks::Looks;
-use super::{Outcome, Site, TrialRecord, TruePose};
-use crate::scenario::Setting;
+use super::{Outcome, Site, TrialRecord, TruePose, UnknownKind};
+use crate::scenario::{Setting, Start};
 use edgeloc::database::{NodeId, TopologicalDatabase};
 use edgeloc::geometry::{Angle, Heading, Scene, Segment2};
-use edgeloc::localize::{Decision, HeadingPrior, Localizer, Look, Motion, ObserveError, StartError};
+use edgeloc::localize::{
+    Decision, HeadingPrior, Localizer, Look, Motion, ObserveError, Rival, Rivals, StartError, UnknownReason,
+};
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
 
 /// Longest message that a record keeps of a panic.
 const MESSAGE_CHARS: usize = 200;
+/// A rival nearer to the true position than this names the truth \[m\].
+const SAME_PLACE_M: f32 = 1.0;
+/// A position answered nearer to the true one than this is no blunder, whatever node it is given to \[m\].
+const NEAR_TIE_M: f32 = 0.5;
 
 /// What happened at one look, for those who watch a trial.
 #[derive(Debug)]
 pub struct LookEvent<'a> {
     /// True heading of the optical axis.
     pub heading: Heading,
-    /// What the compass told of it.
-    pub compass: HeadingPrior,
+    /// What the compass told of it, if there is one.
+    pub compass: Option<HeadingPrior>,
     /// The segments that the robot saw.
     pub scene: &'a [Segment2],
     /// Which nodes were candidates before this look.
@@ -86,11 +92,8 @@ impl<'s> Trial<'s> {
             let scene = looks.scene(look, heading, sources);
 
             let started = Instant::now();
-            let decision = localizer.observe(&Look {
-                heading: Some(compass),
-                motion_since_last: motion,
-                scene: Scene::new(scene),
-            });
+            let decision =
+                localizer.observe(&Look { heading: compass, motion_since_last: motion, scene: Scene::new(scene) });
             let localizer_time = started.elapsed();
 
             record.looks += 1;
@@ -138,6 +141,10 @@ impl<'s> Trial<'s> {
             heading_error_deg: None,
             probability: None,
             is_success: false,
+            is_truth_named: false,
+            is_near_tie: false,
+            unknown_kind: None,
+            rivals: None,
             looks: 0,
             scene_segments: 0,
             scored_nodes: 0,
@@ -148,6 +155,14 @@ impl<'s> Trial<'s> {
             map_segments: database.segment_count() as u32,
             message: None,
         }
+    }
+
+    /// Whether one of the rivals is where the robot is.
+    fn is_among(&self, rivals: &Rivals, nearest_node: u32) -> bool {
+        let is_here = |rival: &Rival| {
+            rival.node.0 == nearest_node || rival.position.distance(self.start.position) <= SAME_PLACE_M
+        };
+        self.setting.row.start != Start::Unlearned && rivals.iter().any(is_here)
     }
 
     fn record_end(
@@ -171,14 +186,29 @@ impl<'s> Trial<'s> {
                 });
                 record.probability = localized.probability;
             }
-            Ok(_) => record.outcome = Outcome::Unknown,
+            Ok(Decision::Unknown { reason }) => {
+                record.outcome = Outcome::Unknown;
+                record.unknown_kind = Some(kind_of(reason));
+                if let UnknownReason::Indistinguishable(rivals) = reason {
+                    record.rivals = Some(rivals_in_words(rivals)).filter(|words| !words.is_empty());
+                    record.is_truth_named = self.is_among(rivals, record.nearest_node);
+                }
+            }
+            // A look more is never the last decision.
+            Ok(Decision::LookAgain { .. }) => record.outcome = Outcome::Unknown,
             Err(error) => {
                 record.outcome = Outcome::Error;
                 record.message = Some(error.to_string());
             }
         }
         let nearest = [record.nearest_node, record.second_nearest_node];
-        record.is_success = record.answered_node.is_some_and(|node| nearest.contains(&node));
+        record.is_success = match self.setting.row.start {
+            Start::Near | Start::Anywhere => record.answered_node.is_some_and(|node| nearest.contains(&node)),
+            Start::Unlearned => record.outcome == Outcome::Unknown,
+        };
+        record.is_truth_named |= record.is_success;
+        let is_close = record.pose_error_m.is_some_and(|error_m| error_m <= NEAR_TIE_M);
+        record.is_near_tie = is_close && !record.is_success && self.setting.row.start != Start::Unlearned;
 
         let scores = localizer.candidates().scores();
         let leader = localizer.candidates().leading_node().map(|(node, _)| node);
@@ -190,6 +220,24 @@ impl<'s> Trial<'s> {
         record.truth_score =
             nearest.into_iter().filter(|node| was_candidate[*node as usize]).map(score_of).reduce(f64::max);
     }
+}
+
+/// Why there is no answer, without the details.
+fn kind_of(reason: &UnknownReason) -> UnknownKind {
+    match reason {
+        UnknownReason::SceneTooPoor => UnknownKind::SceneTooPoor,
+        UnknownReason::OutsideMap => UnknownKind::OutsideMap,
+        UnknownReason::Indistinguishable(_) => UnknownKind::Indistinguishable,
+    }
+}
+
+/// The rivals as a column of the record.
+fn rivals_in_words(rivals: &Rivals) -> String {
+    let words = |rival: &Rival| {
+        let (node, at, probability) = (rival.node.0, rival.position, rival.probability);
+        format!("{node}@{:.2},{:.2}:{probability:.3}", at.x, at.y)
+    };
+    rivals.iter().map(words).collect::<Vec<_>>().join(" ")
 }
 
 /// What a panic said.

@@ -1,5 +1,6 @@
 //! The charts of a run: success against distance to the nearest node, and looks.
 
+use super::ReliabilityBin;
 use super::axes::Axes;
 use super::drawing::{SERIES_COUNT, drawing, line, percent, text, tidy, tooltip};
 use super::summary::PAPER_RATE;
@@ -152,6 +153,35 @@ fn round_up(count: u32) -> u32 {
     let unit = 10_u32.pow(count.max(1).ilog10());
     let step = if unit == 1 { 2 } else { unit };
     count.max(1).div_ceil(step) * step
+}
+
+/// How often what answers state comes true: a dot with its interval for each bin of a reliability curve.
+#[must_use]
+pub fn reliability_chart(series: usize, bins: &[ReliabilityBin]) -> SVG {
+    let axes = Axes { left: 52.0, top: 14.0, width: 300.0, height: 300.0 };
+    // Beside few others it would be drawn as wide as the page.
+    let mut chart = drawing(372.0, 362.0).set("style", "max-width:372px").add(axes.rates_grid());
+    for tenths in [0.0, 0.2, 0.4, 0.6, 0.8, 1.0] {
+        chart.append(text("middle", (axes.x(tenths), axes.y(0.0) + 18.0), format!("{:.0} %", 100.0 * tenths)));
+    }
+    chart.append(line("guide", (axes.x(0.0), axes.y(0.0)), (axes.x(1.0), axes.y(1.0))).add(tooltip("as stated")));
+    let mut group = Group::new().set("class", format!("series{}", series % SERIES_COUNT));
+    let mut trace = String::new();
+    for bin in bins {
+        let Some(rate) = bin.right.rate() else { continue };
+        let (low, high) = bin.right.success_interval();
+        let (x, y) = (axes.x(bin.stated), axes.y(rate));
+        trace.push_str(&format!("{}{x} {y}", if trace.is_empty() { "M" } else { "L" }));
+        let label = format!("stated {}, came true {}", percent(bin.stated), bin.right);
+        let mark = Group::new().add(tooltip(label)).add(line("whisker", (x, axes.y(low)), (x, axes.y(high))));
+        group.append(mark.add(Circle::new().set("class", "dot").set("cx", x).set("cy", y).set("r", 4)));
+    }
+    chart.append(group.add(Path::new().set("class", "trace").set("d", trace)));
+    chart.add(line("axis", (axes.x(0.0), axes.y(0.0)), (axes.x(1.0), axes.y(0.0)))).add(text(
+        "middle",
+        (axes.x(0.5), axes.y(0.0) + 40.0),
+        "probability stated; upwards: right",
+    ))
 }
 
 /// A success rate as dot and interval on a line from 0 to 100 %, beside the paper's and chance.

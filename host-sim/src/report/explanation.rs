@@ -28,8 +28,8 @@ pub struct LookExplanation {
     pub look: usize,
     /// True heading of the optical axis in degrees.
     pub heading_deg: f64,
-    /// What the compass told of it, in degrees.
-    pub compass_deg: f64,
+    /// What the compass told of it, in degrees; none without a compass.
+    pub compass_deg: Option<f64>,
     /// Segments that the camera saw.
     pub seen_segments: usize,
     /// Segments that entered the matching or the verification.
@@ -53,7 +53,7 @@ pub struct LookExplanation {
     /// True heading of the optical axis.
     #[serde(skip)]
     pub heading: Heading,
-    /// What the compass told of it.
+    /// What the compass told of it; the truth without a compass.
     #[serde(skip)]
     pub compass: Heading,
     /// Standard deviation of what the compass tells.
@@ -143,7 +143,7 @@ impl LookExplanation {
         Self {
             look,
             heading_deg: f64::from(event.heading.angle().degrees()),
-            compass_deg: f64::from(event.compass.mean.angle().degrees()),
+            compass_deg: event.compass.map(|told| f64::from(told.mean.angle().degrees())),
             seen_segments: event.scene.len(),
             used_segments: event.localizer.scene_segment_count(),
             nodes: scores.iter().zip(event.was_candidate).map(standing).collect(),
@@ -154,8 +154,8 @@ impl LookExplanation {
             rivals,
             scene: event.scene.to_vec(),
             heading: event.heading,
-            compass: event.compass.mean,
-            compass_spread: event.compass.standard_deviation,
+            compass: event.compass.map_or(event.heading, |told| told.mean),
+            compass_spread: event.compass.map_or(Angle::from_degrees(180.0), |told| told.standard_deviation),
         }
     }
 
@@ -173,8 +173,9 @@ impl LookExplanation {
     pub fn to_text(&self, record: &TrialRecord) -> String {
         let ranking = self.ranking();
         let compass = match self.compass_deg {
-            told if (told - self.heading_deg).abs() < 0.05 => String::new(),
-            told => format!(" (compass {told:.1})"),
+            None => " (no compass)".to_owned(),
+            Some(told) if (told - self.heading_deg).abs() < 0.05 => String::new(),
+            Some(told) => format!(" (compass {told:.1})"),
         };
         let mut words = format!(
             "look {:>2}, heading {:>6.1} degrees{compass}: {} segments seen, {} {} {} {}\n",
@@ -382,7 +383,8 @@ mod tests {
             standing(0.9, true, false),
         ];
         let decision = "look again after a turn of 30 degrees".to_owned();
-        let of_posts = LookExplanation { look: 2, heading_deg: 30.0, compass_deg: 30.0, ..sample::look_at_posts() };
+        let of_posts =
+            LookExplanation { look: 2, heading_deg: 30.0, compass_deg: Some(30.0), ..sample::look_at_posts() };
         LookExplanation { seen_segments: 140, used_segments: 90, nodes, decision, scene: Vec::new(), ..of_posts }
     }
 
@@ -411,7 +413,9 @@ mod tests {
     fn the_words_tell_of_a_compass_that_errs() {
         let record = &sample::run().results.records[0];
         assert!(!look().to_text(record).contains("compass"));
-        let wrong = LookExplanation { compass_deg: 32.5, ..look() };
+        let none = LookExplanation { compass_deg: None, ..look() };
+        assert!(none.to_text(record).contains("heading   30.0 degrees (no compass): "));
+        let wrong = LookExplanation { compass_deg: Some(32.5), ..look() };
         assert!(wrong.to_text(record).contains("heading   30.0 degrees (compass 32.5): "));
     }
 

@@ -26,6 +26,7 @@ pub struct FloorPlan {
     px_per_m: f64,
     wire: String,
     free: String,
+    withheld: String,
     nodes: Vec<Point2>,
 }
 
@@ -38,6 +39,8 @@ pub struct FreeCells {
     pub origin: Point2,
     /// Side of a cell in metres.
     pub side_m: f64,
+    /// Centres of the cells that learning left out, row by row of a run; none when nothing is known of rows.
+    pub withheld: Vec<Vec<Point2>>,
 }
 
 impl FloorPlan {
@@ -57,11 +60,25 @@ impl FloorPlan {
         let min_m = (min_m.0 - MARGIN_M, min_m.1 - MARGIN_M);
         let size_m = (max_m.0 + MARGIN_M - min_m.0, max_m.1 + MARGIN_M - min_m.1);
         let px_per_m = (WIDTH_PX / size_m.0).min(WIDTH_PX * MAX_ASPECT / size_m.1);
-        let mut plan =
-            Self { min_m, size_m, px_per_m, wire: String::new(), free: String::new(), nodes: nodes.to_vec() };
+        let mut plan = Self {
+            min_m,
+            size_m,
+            px_per_m,
+            wire: String::new(),
+            free: String::new(),
+            withheld: String::new(),
+            nodes: nodes.to_vec(),
+        };
         plan.wire = world.map_or_else(String::new, |world| plan.wire_path(world));
         plan.free = free.map_or_else(String::new, |free| plan.free_path(free));
         plan
+    }
+
+    /// The same plan with the free cells tinted that learning left out; `free` tells their grid.
+    #[must_use]
+    pub fn with_withheld(mut self, free: &FreeCells, centers: &[Point2]) -> Self {
+        self.withheld = self.free_path(&FreeCells { centers: centers.to_vec(), ..free.clone() });
+        self
     }
 
     /// An empty drawing of the plan's size.
@@ -110,10 +127,14 @@ impl FloorPlan {
             .add(Path::new().set("class", "wire").set("d", self.wire.as_str()))
     }
 
-    /// The nodes, each with its identity as a tooltip.
+    /// What learning left out, and the nodes, each with its identity as a tooltip.
     #[must_use]
     pub fn node_marks(&self) -> Group {
         let mut group = Group::new();
+        if !self.withheld.is_empty() {
+            let withheld = Path::new().set("class", "withheld").set("d", self.withheld.as_str());
+            group.append(withheld.add(tooltip("not learned")));
+        }
         for (id, &node) in self.nodes.iter().enumerate() {
             let (x, y) = self.to_px(node);
             let label = format!("node {id} at {:.2}, {:.2} m", node.x, node.y);
@@ -213,7 +234,11 @@ mod tests {
     #[test]
     fn neighbouring_free_cells_become_one_rectangle() {
         let centers = [(0.05, 0.05), (0.15, 0.05), (0.35, 0.05)].map(|(x, y)| Point2::new(x, y)).to_vec();
-        let plan = FloorPlan::new(None, Some(&FreeCells { centers, origin: Point2::new(0.0, 0.0), side_m: 0.1 }), &[]);
+        let plan = FloorPlan::new(
+            None,
+            Some(&FreeCells { centers, origin: Point2::new(0.0, 0.0), side_m: 0.1, withheld: Vec::new() }),
+            &[],
+        );
         assert_eq!(plan.free.matches('M').count(), 2);
     }
 

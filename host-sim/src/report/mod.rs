@@ -3,6 +3,7 @@
 //! [`RunFolder`] holds everything needed to repeat a run; [`page()`] makes one self-contained HTML file of it, drawings
 //! inline and without scripts. The drawings serve the command line too.
 
+mod answers;
 mod axes;
 mod charts;
 mod comparison;
@@ -28,11 +29,14 @@ mod timings;
 mod trial_page;
 mod trials_csv;
 mod trials_plan;
+mod validation;
+mod validation_page;
 
 #[cfg(test)]
 mod sample;
 
-pub use charts::{looks_histogram, rate_strip, success_by_distance};
+pub use answers::{AnswerFigures, ReliabilityBin, Share, expected_calibration_error, reliability};
+pub use charts::{looks_histogram, rate_strip, reliability_chart, success_by_distance};
 pub use comparison::{Comparison, NotPaired, Pairs, RunRow, Side};
 pub use drawing::to_svg_file;
 pub use explanation::{AnsweredPose, LookExplanation, NodeStanding, PossiblePlace, answer_words, scene_drawing, sight};
@@ -53,3 +57,5 @@ pub use summary::{MapFacts, PAPER_INTERVAL, PAPER_RATE, RowSummary, Summary, wor
 pub use timings::{RowTimings, RunTimings};
 pub use trial_page::{TrialFacts, trial_page};
 pub use trials_plan::{trial_marks, trials_plan};
+pub use validation::{TotalLine, ValidationRow, WorldLine, validation, validation_csv};
+pub use validation_page::validation_page;

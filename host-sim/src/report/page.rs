@@ -3,12 +3,13 @@
 use super::document::{document, inline};
 use super::drawing::{SERIES_COUNT, percent};
 use super::{
-    FloorPlan, FreeCells, Manifest, PAPER_INTERVAL, RowSummary, RunResults, Summary, looks_histogram, rate_strip,
-    success_by_distance, trial_marks, worst_trials,
+    AnswerFigures, FloorPlan, FreeCells, Manifest, PAPER_INTERVAL, RowSummary, RunResults, Share, Summary,
+    looks_histogram, rate_strip, reliability, reliability_chart, success_by_distance, trial_marks, worst_trials,
 };
 use crate::monte_carlo::{Outcome, TrialRecord};
 use crate::scenario::{Row, Start};
 use crate::world::WireframeWorld;
+use edgeloc::geometry::Point2;
 use maud::{Markup, html};
 use svg::Node as _;
 use svg::node::element::{Definitions, Group, SVG, Use};
@@ -23,10 +24,16 @@ const DRAWN_ROWS: usize = 12;
 /// Without the world or its free space the plan shows what is left.
 #[must_use]
 pub fn page(results: &RunResults, world: Option<&WireframeWorld>, free: Option<&FreeCells>, folder: &str) -> String {
-    let plans: Vec<FloorPlan> = results.nodes.iter().map(|nodes| FloorPlan::new(world, free, nodes)).collect();
+    let plan = |(row, nodes): (usize, &Vec<Point2>)| {
+        let plan = FloorPlan::new(world, free, nodes);
+        let withheld = free.and_then(|free| Some((free, free.withheld.get(row)?)));
+        withheld.map_or(plan.clone(), |(free, centers)| plan.with_withheld(free, centers))
+    };
+    let plans: Vec<FloorPlan> = results.nodes.iter().enumerate().map(plan).collect();
     let title = format!("edgeloc run: {}", results.scenario.name);
     let body = html! {
         (headline(results))
+        (answers(results))
         (distance(results))
         (self::plans(results, &plans))
         (looks(results))
@@ -49,7 +56,8 @@ fn headline(results: &RunResults) -> Markup {
     html! { section {
         h2 { "Success" }
         p.note {
-            "A trial succeeds when the answered node is one of the two nearest to the true position. Brackets and bars are "
+            "A trial succeeds when the answered node is one of the two nearest to the true position (and without an answer, where it "
+            "starts in a place that was never learned). Brackets and bars are "
             "95 % Wilson intervals. The paper reports " (percent(summary.paper_rate)) " ["
             (format!("{:.1}, {:.1}", 100.0 * low, 100.0 * high)) "] in simulation (dashed, shown beside the near starts); "
             "blind guessing gives " (values(summary, |row| percent(row.chance_rate))) " (dotted). Time per look is the mean wall time of the "
@@ -97,6 +105,71 @@ fn headline_row(results: &RunResults, series: usize, row: &RowSummary) -> Markup
     } }
 }
 
+/// What the answers are worth, and whether their probabilities are honest.
+fn answers(results: &RunResults) -> Markup {
+    let has_probability = results.summary.rows.iter().any(|row| row.answers.calibration_error.is_some());
+    html! { section {
+        h2 { "Answers" }
+        p.note {
+            "A localiser may say that it can't tell: that is a failure above, but no false accept. Coverage: trials answered. False "
+            "accepts: wrong answers of all answers; where starts are unlearned, answers of all trials, and right is \"can't tell\". "
+            "Or named: right, or the truth among the rivals named. Near ties: answers within 0.5 m whose node is not one of the two "
+            "nearest; they count as wrong. Brackets are 95 % Wilson intervals; position errors are median, 95 % and 99 % of the answers."
+        }
+        div.wide { table {
+            tr {
+                th { "row" } th { "coverage" } th { "false accepts" } th { "or named" } th.number { "near ties" }
+                th.number { "position error" br; "50 / 95 / 99 %" } th.number { "heading error" br; "median" }
+                th.number { "calibration" br; "error" }
+            }
+            @for (series, row) in results.summary.rows.iter().enumerate() { @let answers = &row.answers; tr {
+                td { (key(series)) (row.row) }
+                td { (share(&answers.coverage, 1)) } td { (share(&answers.false_accepts, 2)) } td { (share(&answers.truth_named, 1)) }
+                td.number { (answers.near_ties) }
+                td.number { (position_errors(answers)) }
+                td.number { @if let Some(error) = answers.heading_error_median_deg { (format!("{error:.2}°")) } }
+                td.number { @if let Some(error) = answers.calibration_error { (percent(error)) } }
+            } }
+        } }
+        @if has_probability {
+            h3 { "Are the probabilities honest?" }
+            p.note {
+                "Reliability of the probabilities that answers state: bins of equally many answers by rising probability, with 95 % Wilson "
+                "intervals; on the dashed line what is stated comes true. The calibration error is the mean distance from it, weighed by "
+                "answers; a few hundred answers have one of a point or so by chance."
+            }
+            div.panels { @for (series, row) in drawn(results).iter().enumerate() {
+                @let bins = reliability(results.records.iter().filter(|record| record.row == row.name));
+                @if !bins.is_empty() { figure {
+                    figcaption { (key(series)) (row.name) }
+                    (inline(&reliability_chart(series, &bins)))
+                } }
+            } }
+        }
+    } }
+}
+
+/// A share with its interval, in percent with so many decimals.
+pub(super) fn share(share: &Share, decimals: usize) -> Markup {
+    html! { @match share.rate {
+        Some(rate) => {
+            (format!("{:.decimals$} %", 100.0 * rate)) " "
+            span.quiet { "[" (format!("{:.decimals$}, {:.decimals$}", 100.0 * share.low, 100.0 * share.high)) "]" }
+        }
+        None => span.quiet { "of none" },
+    } }
+}
+
+/// The quantiles of the position error in centimetres.
+pub(super) fn position_errors(answers: &AnswerFigures) -> String {
+    match (answers.pose_error_median_m, answers.pose_error_95_m, answers.pose_error_99_m) {
+        (Some(median), Some(most), Some(nearly_all)) => {
+            format!("{:.1} / {:.1} / {:.1} cm", 100.0 * median, 100.0 * most, 100.0 * nearly_all)
+        }
+        _ => String::new(),
+    }
+}
+
 fn distance(results: &RunResults) -> Markup {
     let rows = drawn(results);
     html! { section {
@@ -137,6 +210,7 @@ fn plans(results: &RunResults, plans: &[FloorPlan]) -> Markup {
         ul.legend {
             li { span.key.kgood {} "success" } li { span.key.kbad {} "failure" } li { span.key.kunknown {} "can't tell" }
             li { span.key.knode {} "node" } li { span.key.kfree {} "free space" }
+            @if rows.iter().any(|row| row.start == Start::Unlearned) { li { span.key.kwithheld {} "not learned" } }
         }
         (inline(&shared))
         div.panels {
@@ -288,7 +362,14 @@ mod tests {
     fn the_page_is_self_contained_and_complete() {
         let sample = sample::run();
         let page = page(&sample.results, Some(&sample.world), Some(&sample.free), "runs/2026-01-02-hall");
-        for part in ["near, no polarity", "edgeloc replay runs/2026-01-02-hall --row", "[localizer.pgh]", "<title>"] {
+        for part in [
+            "Answers",
+            "false accepts",
+            "near, no polarity",
+            "edgeloc replay runs/2026-01-02-hall --row",
+            "[localizer.pgh]",
+            "<title>",
+        ] {
             assert!(page.contains(part), "the page lacks {part:?}");
         }
         assert!(!page.contains("<script") && !page.contains("src=") && !page.contains("NaN"));
@@ -301,6 +382,18 @@ mod tests {
     fn a_page_without_the_world_is_still_a_page() {
         let page = page(&sample::run().results, None, None, "runs/x");
         assert!(page.contains("Where it worked"));
+    }
+
+    #[test]
+    fn probabilities_have_a_reliability_curve() {
+        let mut results = sample::run().results;
+        let without = page(&results, None, None, "runs/x");
+        results.records.iter_mut().for_each(|record| record.probability = Some(0.9));
+        let nodes = results.nodes.clone();
+        results.summary = Summary::new(&results.scenario, &nodes, 120.0, &results.records);
+        let with = page(&results, None, None, "runs/x");
+        assert!(!without.contains("Are the probabilities honest?") && with.contains("Are the probabilities honest?"));
+        assert!(with.contains("stated 90.0 %"));
     }
 
     #[test]

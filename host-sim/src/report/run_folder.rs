@@ -76,6 +76,17 @@ impl RunFolder {
         unreachable!("the last attempt returns")
     }
 
+    /// The folder at `path`, made when there is none: for one of several runs in a folder.
+    ///
+    /// # Errors
+    /// When it can't be made.
+    pub fn at(path: PathBuf) -> Result<Self, RunFolderError> {
+        match fs::create_dir_all(&path) {
+            Ok(()) => Ok(Self { path }),
+            Err(error) => Err(RunFolderError::writing(path)(error)),
+        }
+    }
+
     /// The folder of a finished run.
     ///
     /// # Errors

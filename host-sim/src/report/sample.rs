@@ -45,7 +45,7 @@ pub(crate) fn run() -> Sample {
     let facts = WorldFacts::new(&world, &scenario.world);
     let manifest = Manifest::new(&scenario, facts, 2, None, records.len(), jiff::Timestamp::UNIX_EPOCH).finished();
     let results = RunResults { manifest, scenario, nodes, records, summary, timings };
-    Sample { results, world, free: FreeCells { centers, origin: Point2::default(), side_m: 0.1 } }
+    Sample { results, world, free: FreeCells { centers, origin: Point2::default(), side_m: 0.1, withheld: Vec::new() } }
 }
 
 fn record(stream: &mut Stream, row: &str, start: Start, trial: u32, nodes: &[Point2]) -> TrialRecord {
@@ -73,6 +73,10 @@ fn record(stream: &mut Stream, row: &str, start: Start, trial: u32, nodes: &[Poi
         heading_error_deg: None,
         probability: None,
         is_success,
+        is_truth_named: is_success,
+        is_near_tie: false,
+        unknown_kind: None,
+        rivals: None,
         looks: 1 + stream.index(if is_success { 4 } else { 12 }) as u32,
         scene_segments: 200,
         scored_nodes: 80,
@@ -136,7 +140,7 @@ pub(crate) fn look_at_posts() -> LookExplanation {
     LookExplanation {
         look: 1,
         heading_deg: 0.0,
-        compass_deg: 0.0,
+        compass_deg: Some(0.0),
         seen_segments: scene.len(),
         used_segments: scene.len(),
         nodes: Vec::new(),

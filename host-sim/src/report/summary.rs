@@ -1,5 +1,6 @@
 //! The figures of a run, row by row: what `summary.json` holds and the tables show. No wall times.
 
+use super::AnswerFigures;
 use crate::monte_carlo::{Outcome, SuccessRate, TrialRecord};
 use crate::scenario::{Scenario, Start};
 use edgeloc::geometry::Point2;
@@ -32,7 +33,7 @@ pub struct MapFacts {
     pub mean_bytes: f64,
     /// Mean segments in the model of a node.
     pub mean_segments_per_node: f64,
-    /// Free space for each node \[m2\]: the density of the nodes.
+    /// Free space, without what is withheld, for each node \[m2\]: the density of the nodes.
     pub free_m2_per_node: f64,
 }
 
@@ -49,11 +50,11 @@ pub struct RowSummary {
     pub nodes: usize,
     /// The map as learned.
     pub map: MapFacts,
-    /// Success rate of blind guessing, a fraction: two of the nodes are right.
+    /// Success rate of blind guessing, a fraction: two of the nodes are right, none where starts are unlearned.
     pub chance_rate: f64,
     /// Trials.
     pub trials: u64,
-    /// Trials that ended at one of the two nearest nodes.
+    /// Trials that ended right: at one of the two nearest nodes, or without an answer where starts are unlearned.
     pub successes: u64,
     /// Successes per trial, a fraction; none without trials.
     pub success_rate: Option<f64>,
@@ -61,6 +62,8 @@ pub struct RowSummary {
     pub success_rate_low: f64,
     /// Upper end of the 95 % Wilson interval, a fraction.
     pub success_rate_high: f64,
+    /// What the answers are worth.
+    pub answers: AnswerFigures,
     /// Trials answered "I can't tell".
     pub unknown: u64,
     /// Trials that ended in an error of the localiser.
@@ -89,9 +92,11 @@ impl Summary {
     /// The figures of `records`, trials of `scenario` with the given nodes of each row in so much free space.
     #[must_use]
     pub fn new(scenario: &Scenario, nodes: &[Vec<Point2>], free_area_m2: f64, records: &[TrialRecord]) -> Self {
+        let settings = scenario.settings().unwrap_or_default();
         let rows = scenario.rows.iter().enumerate().map(|(index, row)| {
             let nodes = nodes.get(index).map_or(0, Vec::len);
             let per_node = |value: f64| value / nodes.max(1) as f64;
+            let withheld = settings.get(index).map_or(0.0, |setting| setting.scenario.learning.withheld);
             let records = records.iter().filter(|record| record.row == row.name).collect::<Vec<_>>();
             let success = SuccessRate::of(records.iter().map(|record| record.is_success));
             let interval = success.success_interval();
@@ -106,14 +111,18 @@ impl Summary {
                 map: MapFacts {
                     mean_bytes: mean(records.iter().map(|record| f64::from(record.map_bytes))),
                     mean_segments_per_node: per_node(mean(records.iter().map(|record| f64::from(record.map_segments)))),
-                    free_m2_per_node: per_node(free_area_m2),
+                    free_m2_per_node: per_node(free_area_m2 * (1.0 - withheld)),
                 },
-                chance_rate: (2.0 / nodes.max(1) as f64).min(1.0),
+                chance_rate: match row.start {
+                    Start::Near | Start::Anywhere => (2.0 / nodes.max(1) as f64).min(1.0),
+                    Start::Unlearned => 0.0,
+                },
                 trials: success.trials,
                 successes: success.successes,
                 success_rate: success.rate(),
                 success_rate_low: interval.0,
                 success_rate_high: interval.1,
+                answers: AnswerFigures::new(row.start, &records),
                 unknown: count(Outcome::Unknown),
                 errors: count(Outcome::Error),
                 mean_looks: mean(looks.iter().copied()),

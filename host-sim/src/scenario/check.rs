@@ -30,6 +30,7 @@ impl Scenario {
         within("trials_per_map", self.trials_per_map, 1..=1_000_000, "50 is the default")?;
         within("near_radius_m", self.near_radius_m, 0.0..=10.0, "a near start lies within 0.3 m of a node by default")?;
         within("learning.nodes", self.learning.nodes, 1..=4096, "the paper's office has 72")?;
+        within("learning.withheld", self.learning.withheld, 0.0..=0.9, "0.25 leaves places that no map knows")?;
         within("learning.views", self.learning.views, 1..=360, "12 views, 30 degrees apart, cover the circle")?;
         self.check_world()?;
         self.check_rig()?;
@@ -206,6 +207,8 @@ mod tests {
         assert_eq!(key, "uncertainty.stereo_match.magnitude");
         assert_eq!(refused(|s| s.rows.clear()), "rows");
         assert_eq!(refused(|s| s.trials = 250_001), "trials");
+        assert_eq!(refused(|s| s.learning.withheld = 1.0), "learning.withheld");
+        assert_eq!(refused(|s| s.rows[1].start = crate::scenario::Start::Unlearned), "rows.1.set.learning.withheld");
         assert_eq!(refused(|s| s.rows[1].name = s.rows[0].name.clone()), "rows.1.name");
     }
 

@@ -12,7 +12,8 @@ use toml::de::{DeTable, DeValue};
 const MAX_FILE_BYTES: u64 = 1 << 20;
 
 impl Scenario {
-    /// The scenario called `name` (a file, else a bundled one) with `settings` (`key=value`) on top, checked.
+    /// The scenario called `name` (a bundled one, else a file) with `settings` (`key=value`) on top, checked. A file called
+    /// like a bundled scenario is meant by `./edgeloc`: what else lies in the current folder changes no run.
     ///
     /// Relative paths of a world and its view-dependency file count from the scenario file's folder, those of a setting
     /// from the current one; they are made absolute.
@@ -22,10 +23,8 @@ impl Scenario {
     pub fn load(name: &str, settings: &[String]) -> Result<Self, ScenarioError> {
         let path = Path::new(name);
         let (origin, text, mut scenario) = match Preset::find(name) {
-            Some(preset) if !path.is_file() => {
-                (preset.name, preset.text.to_owned(), Self::parse(preset.text, preset.name)?)
-            }
-            _ => {
+            Some(preset) => (preset.name, preset.text.to_owned(), Self::parse(preset.text, preset.name)?),
+            None => {
                 let text = read_limited(name)?;
                 let mut scenario = Self::parse(&text, name)?;
                 scenario.complete_from_path(path, &text);
@@ -184,7 +183,7 @@ fn span_in(table: &DeTable<'_>, path: &[&str]) -> Option<Range<usize>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::{Building, Start, VisibilityChoice, WorldChoice};
+    use crate::scenario::{Building, LocalizerKind, Start, VisibilityChoice, WorldChoice};
     use crate::uncertainty::PolarityFlips;
     use std::path::PathBuf;
 
@@ -202,10 +201,30 @@ mod tests {
     }
 
     #[test]
-    fn the_bundled_edgeloc_is_the_papers_with_one_edge_in_twenty_flipped() {
-        let mut expected = Scenario { name: "edgeloc".to_owned(), ..Scenario::default() };
+    fn the_bundled_edgeloc_has_the_default_localiser_and_one_edge_in_twenty_flipped() {
+        let edgeloc = Scenario::load("edgeloc", &[]).expect("bundled");
+        let mut expected = Scenario { name: "edgeloc".to_owned(), rows: edgeloc.rows.clone(), ..Scenario::default() };
         expected.uncertainty.polarity_flips = PolarityFlips { enabled: true, magnitude: 0.05 };
-        assert_eq!(Scenario::load("edgeloc", &[]).expect("bundled"), expected);
+        expected.learning.join = true;
+        expected.localizer.kind = LocalizerKind::Edgeloc;
+        (expected.localizer.turn_deg, expected.localizer.max_looks) = (60.0, 6);
+        assert_eq!(edgeloc, expected);
+        let starts = edgeloc.rows.iter().map(|row| row.start);
+        assert_eq!(starts.collect::<Vec<_>>(), [Start::Anywhere, Start::Near, Start::Unlearned]);
+    }
+
+    #[test]
+    fn studies_of_the_default_localiser_begin_with_it_and_the_demo_has_it_beside_the_papers() {
+        let row_of = |preset: &str, row: usize| {
+            let scenario = Scenario::load(preset, &[]).expect("bundled");
+            let setting = scenario.settings().expect("legal").swap_remove(row).scenario;
+            (setting.localizer, setting.learning, setting.uncertainty)
+        };
+        let default = row_of("edgeloc", 0);
+        assert_eq!((row_of("stress", 0), row_of("ablation", 0)), (default.clone(), default.clone()));
+        assert_eq!(row_of("demo", 1), default);
+        let paper = Scenario::default();
+        assert_eq!(row_of("demo", 0), (paper.localizer, paper.learning, default.2));
     }
 
     #[test]

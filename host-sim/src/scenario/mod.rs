@@ -90,7 +90,7 @@ impl Scenario {
 }
 
 /// How the world is learned.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct LearningSettings {
     /// Nodes placed in the free space; 72 in the paper.
@@ -101,11 +101,13 @@ pub struct LearningSettings {
     pub views: u16,
     /// Whether pieces of one edge become one segment of the model again; not in the paper.
     pub join: bool,
+    /// Share of the free space, one connected part, whose nodes are not learned; for rows that start unlearned.
+    pub withheld: f64,
 }
 
 impl Default for LearningSettings {
     fn default() -> Self {
-        Self { nodes: 72, placement: NodePlacement::Spread, views: 12, join: false }
+        Self { nodes: 72, placement: NodePlacement::Spread, views: 12, join: false, withheld: 0.0 }
     }
 }
 

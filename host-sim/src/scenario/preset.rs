@@ -1,5 +1,5 @@
 //! The bundled scenarios: `paper`, the paper's setting in the bundled office and the base of every other scenario;
-//! `edgeloc`, the same with what a robot of ours has to expect; and a quick one.
+//! `edgeloc`, the default localiser with what a robot of ours has to expect; studies, and a quick one.
 
 /// A bundled scenario.
 #[derive(Debug, Clone, Copy)]
@@ -21,8 +21,24 @@ pub const PRESETS: &[Preset] = &[
     },
     Preset {
         name: "edgeloc",
-        summary: "the same, and 5 % of the edges of each look bright on the other side than learned",
+        summary: "the default localiser: geometric verification, with 5 % of the edges of each look bright on the other side \
+                  than learned; starts anywhere, near the nodes, and where nothing was learned",
         text: include_str!("../../scenarios/edgeloc.toml"),
+    },
+    Preset {
+        name: "demo",
+        summary: "the paper's localiser and the default one on the same poses and noise",
+        text: include_str!("../../scenarios/demo.toml"),
+    },
+    Preset {
+        name: "stress",
+        summary: "the default localiser with one thing made harder in each row",
+        text: include_str!("../../scenarios/stress.toml"),
+    },
+    Preset {
+        name: "ablation",
+        summary: "the default localiser without one of its parts in each row",
+        text: include_str!("../../scenarios/ablation.toml"),
     },
     Preset {
         name: "smoke",

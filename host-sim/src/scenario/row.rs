@@ -42,14 +42,17 @@ pub struct Row {
     pub set: Table,
 }
 
-/// Where the robot of a trial is put down; its heading is uniform in either case.
+/// Where the robot of a trial is put down; its heading is uniform in any case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Start {
     /// Within `near_radius_m` of a node, in free space.
     Near,
-    /// Uniform in free space.
+    /// Uniform in free space, without what `learning.withheld` keeps from being learned.
     Anywhere,
+    /// Uniform over the places that no map knows: in the part that `learning.withheld` keeps from being learned, a walk
+    /// of [`UNLEARNED_WAY_M`](crate::learning::UNLEARNED_WAY_M) from every learned node. Right is "I can't tell" there.
+    Unlearned,
 }
 
 /// A row with the whole scenario that it stands for.
@@ -149,6 +152,19 @@ impl Scenario {
         }
         if changed.trials.is_some() || !changes.is_empty() {
             scenario.check_values().map_err(|illegal| illegal.in_row(index, &row.name))?;
+        }
+        if row.start == Start::Unlearned && scenario.learning.withheld <= 0.0 {
+            let withheld = IllegalValue {
+                row: None,
+                key: "learning.withheld".to_owned(),
+                value: scenario.learning.withheld.to_string(),
+                legal: "above 0 to 0.9 where start = \"unlearned\"".to_owned(),
+                remedy:
+                    "a robot can start in unlearned places only where some are; write set = { \"learning.withheld\" = \
+                         0.25 }"
+                        .to_owned(),
+            };
+            return Err(withheld.in_row(index, &row.name));
         }
         Ok(Setting { row, scenario })
     }

@@ -2,7 +2,8 @@
 //!
 //! The whole error has the standard deviation given. A part of its variance is a bias, steel and wiring about the robot,
 //! drawn once a trial; the rest is noise, drawn in each look. The localiser is told the wrong heading and, as its
-//! spread, that standard deviation; without this source it is told the truth as exact. No image changes.
+//! spread, that standard deviation; without this source it is told the truth as exact, and of a robot without a compass
+//! nothing. No image changes.
 //!
 //! In looks alone: a map is made along headings that many readings and odometry agree on. A source of ours; the paper
 //! expects the orientation to be known (section 3.2).
@@ -33,6 +34,8 @@ source! {
     pub struct Compass: FACTS {
         /// Share of the error's variance that is a bias, the same in all looks of a trial; the rest is noise.
         pub bias_share: f64 in 0.0 to 1.0 = 0.5,
+        /// Whether the robot has a compass at all; without one the localiser is told no heading, whatever the rest says.
+        pub available: bool = true,
     }
 }
 
@@ -64,7 +67,7 @@ mod tests {
         let sources = Sources { compass, ..Sources::none() };
         let heading = Heading::new(Angle::from_degrees(100.0)).expect("finite");
         let error_deg = |trial, look| {
-            let told = sources.compass_reading(heading, &NoiseKey::look(5, trial, look));
+            let told = sources.compass_reading(heading, &NoiseKey::look(5, trial, look)).expect("a compass");
             assert!((f64::from(told.standard_deviation.degrees()) - compass.magnitude).abs() < 1e-5);
             f64::from(told.mean.angle().degrees() - heading.angle().degrees())
         };
@@ -81,7 +84,16 @@ mod tests {
         for compass in [Compass { enabled: true, magnitude: 0.0, ..Compass::default() }, Compass::default()] {
             let sources = Sources { compass, ..Sources::none() };
             let told = sources.compass_reading(heading, &NoiseKey::look(5, 0, 0));
-            assert_eq!(told, HeadingPrior::exact(heading));
+            assert_eq!(told, Some(HeadingPrior::exact(heading)));
+        }
+    }
+
+    #[test]
+    fn a_robot_without_a_compass_is_told_nothing_whether_it_would_err_or_not() {
+        for enabled in [false, true] {
+            let compass = Compass { enabled, available: false, ..Compass::default() };
+            let sources = Sources { compass, ..Sources::none() };
+            assert_eq!(sources.compass_reading(Heading::default(), &NoiseKey::look(5, 0, 0)), None);
         }
     }
 

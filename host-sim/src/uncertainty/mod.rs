@@ -10,6 +10,7 @@
 //! | source | symbol | default | acts in | what it does |
 //! |---|---|---|---|---|
 //! | [`Clutter`] | | off; 20 % | looks | puts random segments in place of that share of the features |
+//! | [`Occlusion`] | | off; 25 % | looks | hides that share of the bearings, in one span |
 //! | [`CameraTilt`] | | off; 1 degree | looks | rolls and pitches the camera |
 //! | [`PolarityFlips`] | | off; 5 % | looks | swaps the bright and the dark side of that share of the features |
 //! | [`LateralEdgeShift`] | psi_l | 3 px | both | moves each feature along its image normal |
@@ -35,6 +36,7 @@ mod epipolar_removal;
 mod geometric_approximation;
 mod image_noise;
 mod lateral_edge_shift;
+mod occlusion;
 mod polarity_flips;
 mod setting;
 mod sources;
@@ -53,6 +55,7 @@ pub use epipolar_removal::EpipolarRemoval;
 pub use geometric_approximation::GeometricApproximation;
 pub use image_noise::ImageNoise;
 pub use lateral_edge_shift::LateralEdgeShift;
+pub use occlusion::Occlusion;
 pub use polarity_flips::PolarityFlips;
 pub use setting::{ActsIn, SourceFacts, SourceNumber, SourceSetting};
 pub use sources::{NoiseKey, SourceError, Sources};

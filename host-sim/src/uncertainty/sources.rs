@@ -12,8 +12,8 @@
 
 use super::{
     ActsIn, CameraCalibration, CameraTilt, Clutter, Compass, CornerDetectionLoss, CornerMatch, EdgeDetectionLoss,
-    EpipolarRemoval, GeometricApproximation, ImageNoise, LateralEdgeShift, PolarityFlips, SourceFacts, SourceNumber,
-    SourceSetting, StereoMatch, UncertaintySource,
+    EpipolarRemoval, GeometricApproximation, ImageNoise, LateralEdgeShift, Occlusion, PolarityFlips, SourceFacts,
+    SourceNumber, SourceSetting, StereoMatch, UncertaintySource,
 };
 use crate::camera::StereoObservation;
 use crate::random::Stream;
@@ -66,6 +66,7 @@ macro_rules! list_of_sources {
 
 list_of_sources! {
     clutter: Clutter,
+    occlusion: Occlusion,
     camera_tilt: CameraTilt,
     polarity_flips: PolarityFlips,
     lateral_edge_shift: LateralEdgeShift,
@@ -101,14 +102,17 @@ impl Sources {
         }
     }
 
-    /// What the compass tells of a heading in the look of `key`; exact when its error is off.
+    /// What the compass tells of a heading in the look of `key`; exact when its error is off, `None` without a compass.
     #[must_use]
-    pub fn compass_reading(&self, heading: Heading, key: &NoiseKey) -> HeadingPrior {
+    pub fn compass_reading(&self, heading: Heading, key: &NoiseKey) -> Option<HeadingPrior> {
+        if !self.compass.available {
+            return None;
+        }
         if !self.compass.enabled {
-            return HeadingPrior::exact(heading);
+            return Some(HeadingPrior::exact(heading));
         }
         let facts = self.compass.facts();
-        self.compass.read(heading, &mut key.of_trial().stream(facts), &mut key.stream(facts))
+        Some(self.compass.read(heading, &mut key.of_trial().stream(facts), &mut key.stream(facts)))
     }
 
     /// The sources themselves, if every magnitude and every other number is legal.
@@ -252,7 +256,9 @@ mod tests {
     }
 
     /// What the sources leave of a view, of a look, of the corners of a calibration, of a heading and of a robot.
-    fn effects(sources: &Sources) -> (StereoObservation, StereoObservation, Vec<CornerPair>, HeadingPrior, bool) {
+    fn effects(
+        sources: &Sources,
+    ) -> (StereoObservation, StereoObservation, Vec<CornerPair>, Option<HeadingPrior>, bool) {
         let (look_key, mut look, mut corners) = (NoiseKey::look(9, 4, 0), observation(300), corners(300));
         sources.apply(&mut look, &look_key);
         sources.perturb_corners(&mut corners, 9, 0);

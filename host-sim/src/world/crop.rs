@@ -31,7 +31,13 @@ pub fn crop(world: &WireframeWorld, rectangle: &Rectangle, name: String) -> Wire
         };
         (start.distance(end) >= SHORTEST_M).then_some(Segment3 { start, end, ..*edge })
     });
-    WireframeWorld { name, origin, edges: edges.collect(), surfaces: crop_surfaces(&world.surfaces, rectangle), reference_viewpoints: None }
+    WireframeWorld {
+        name,
+        origin,
+        edges: edges.collect(),
+        surfaces: crop_surfaces(&world.surfaces, rectangle),
+        reference_viewpoints: None,
+    }
 }
 
 fn crop_surfaces(surfaces: &Surfaces, rectangle: &Rectangle) -> Surfaces {
@@ -51,8 +57,7 @@ fn crop_surfaces(surfaces: &Surfaces, rectangle: &Rectangle) -> Surfaces {
 /// The part of a convex polygon, or of a line given by its two ends, within the rectangle.
 fn cut_polygon(corners: &[Point3], rectangle: &Rectangle) -> Vec<Point3> {
     let Rectangle { min, max } = *rectangle;
-    let sides: [&dyn Fn(&Point3) -> f32; 4] =
-        [&|p| p.x - min.x, &|p| max.x - p.x, &|p| p.y - min.y, &|p| max.y - p.y];
+    let sides: [&dyn Fn(&Point3) -> f32; 4] = [&|p| p.x - min.x, &|p| max.x - p.x, &|p| p.y - min.y, &|p| max.y - p.y];
     let mut corners = corners.to_vec();
     let is_line = corners.len() == 2;
     for inside in sides {
@@ -91,7 +96,12 @@ mod tests {
                 edge(point(3.99, 1.0, 1.0), point(5.0, 1.0, 1.0)),
             ],
             surfaces: Surfaces {
-                vertices: vec![point(-10.0, -10.0, 0.0), point(30.0, -10.0, 0.0), point(-10.0, 30.0, 0.0), point(9.0, 9.0, 1.0)],
+                vertices: vec![
+                    point(-10.0, -10.0, 0.0),
+                    point(30.0, -10.0, 0.0),
+                    point(-10.0, 30.0, 0.0),
+                    point(9.0, 9.0, 1.0),
+                ],
                 triangles: vec![[0, 1, 2], [1, 2, 3]],
             },
             ..WireframeWorld::default()

@@ -186,7 +186,8 @@ impl<'m> Checker<'m> {
             let mut weight = [0_i32; LANES];
             for lane in 0..LANES {
                 let tolerance = fixed_part + depth_part * image.inverse_depth[lane] * image.inverse_depth[lane];
-                width[lane] = u32::from(tolerance > 100.0) + u32::from(tolerance > 400.0) + u32::from(tolerance > 1600.0);
+                width[lane] =
+                    u32::from(tolerance > 100.0) + u32::from(tolerance > 400.0) + u32::from(tolerance > 1600.0);
                 plane[lane] = channel_in_lane(image.way[0][lane], image.way[1][lane]);
             }
             let count = Self::point_count(segment, per_px);

@@ -44,8 +44,13 @@ impl<'m> PoseCheck<'m> {
         let too_small =
             CapacityError { what: "pose check in 64-bit words", capacity: memory.len(), needed: Self::memory_len() };
         let mut rest = Rest::new(memory);
-        let mut divide =
-            || Some((rest.take(DistancePlanes::BYTES)?.try_into().ok()?, rest.take(VIEW_CAPACITY)?, rest.take(Self::MAX_SEGMENTS)?));
+        let mut divide = || {
+            Some((
+                rest.take(DistancePlanes::BYTES)?.try_into().ok()?,
+                rest.take(VIEW_CAPACITY)?,
+                rest.take(Self::MAX_SEGMENTS)?,
+            ))
+        };
         let (planes, view, seen): (_, _, &mut [SeenSegment]) = divide().ok_or(too_small)?;
         let mut checker = Checker::new(rig, SegmentFilter::new(config), planes, view);
         let (filter, frame) = (*checker.filter(), *checker.frame());

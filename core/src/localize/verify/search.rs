@@ -120,8 +120,7 @@ impl<'m> Search<'m> {
         };
         let per_heading = self.config.cells_per_node();
         let cell_m = self.cell_m;
-        let offset_of =
-            |index: i32| [(index % side - half) as f32 * cell_m, (index / side - half) as f32 * cell_m];
+        let offset_of = |index: i32| [(index % side - half) as f32 * cell_m, (index / side - half) as f32 * cell_m];
         self.ranked_count = 0;
         for (node, cells) in
             database.nodes().zip(self.cells.chunks_exact_mut(usize::from(self.config.headings) * per_heading))

@@ -161,7 +161,8 @@ fn matched_look(facts: &TrialFacts<'_>, look: &LookExplanation, images: &LookIma
 fn headings(look: &LookExplanation) -> String {
     let spread = look.compass_spread.degrees();
     let spread = if spread > 0.0 { format!(" ± {spread:.1}°") } else { String::new() };
-    format!("True heading {:.1}°, told {:.1}°{spread}.", look.heading_deg, look.compass_deg)
+    let told = look.compass_deg.map_or_else(|| "not told".to_owned(), |told| format!("told {told:.1}°{spread}"));
+    format!("True heading {:.1}°, {told}.", look.heading_deg)
 }
 
 fn images_section(facts: &TrialFacts<'_>, images: &LookImages) -> Markup {

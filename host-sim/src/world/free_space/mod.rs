@@ -149,7 +149,11 @@ impl FreeSpace {
 
     /// A point uniform over the free cells.
     pub fn sample(&self, stream: &mut Stream) -> Point2 {
-        let center = self.grid.center(self.cells[stream.index(self.cells.len())]);
+        self.sample_cell(self.grid.center(self.cells[stream.index(self.cells.len())]), stream)
+    }
+
+    /// A point uniform over the cell about `center`.
+    pub(crate) fn sample_cell(&self, center: Point2, stream: &mut Stream) -> Point2 {
         let half = 0.5 * f64::from(self.options.cell_m);
         let mut beside = |coordinate: f32| coordinate + stream.uniform(-half, half) as f32;
         Point2::new(beside(center.x), beside(center.y))
