@@ -184,7 +184,7 @@ fn span_in(table: &DeTable<'_>, path: &[&str]) -> Option<Range<usize>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::{Building, Start, VisibilityChoice, WorldChoice};
+    use crate::scenario::{Building, LocalizerKind, Start, VisibilityChoice, WorldChoice};
     use crate::uncertainty::PolarityFlips;
     use std::path::PathBuf;
 
@@ -202,8 +202,11 @@ mod tests {
     }
 
     #[test]
-    fn the_bundled_edgeloc_is_the_papers_with_one_edge_in_twenty_flipped() {
+    fn the_bundled_edgeloc_is_the_papers_world_with_our_localiser_and_one_edge_in_twenty_flipped() {
         let mut expected = Scenario { name: "edgeloc".to_owned(), ..Scenario::default() };
+        expected.learning.join = true;
+        expected.localizer.kind = LocalizerKind::Edgeloc;
+        (expected.localizer.turn_deg, expected.localizer.max_looks) = (60.0, 6);
         expected.uncertainty.polarity_flips = PolarityFlips { enabled: true, magnitude: 0.05 };
         assert_eq!(Scenario::load("edgeloc", &[]).expect("bundled"), expected);
     }

@@ -1,5 +1,5 @@
 //! The bundled scenarios: `paper`, the paper's setting in the bundled office and the base of every other scenario;
-//! `edgeloc`, the same with what a robot of ours has to expect; and a quick one.
+//! `edgeloc`, our localiser with what a robot of ours has to expect; and a quick one.
 
 /// A bundled scenario.
 #[derive(Debug, Clone, Copy)]
@@ -21,7 +21,7 @@ pub const PRESETS: &[Preset] = &[
     },
     Preset {
         name: "edgeloc",
-        summary: "the same, and 5 % of the edges of each look bright on the other side than learned",
+        summary: "our localiser there, with 5 % of the edges of each look bright on the other side than learned",
         text: include_str!("../../scenarios/edgeloc.toml"),
     },
     Preset {
