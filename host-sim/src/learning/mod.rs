@@ -1,5 +1,6 @@
 //! World learning: from what a stereo rig sees at the nodes to the bytes of a topological database.
 
+mod budget;
 mod calibrated_rig;
 mod calibration_bench;
 mod exploration;
@@ -10,6 +11,7 @@ mod node_placement;
 mod node_views;
 mod place_nodes;
 
+pub use budget::keep_most_telling;
 pub use calibrated_rig::CalibratedRig;
 pub use calibration_bench::{CalibrationBench, FAR_DISPARITY_PX, PRIOR, SimulatedCalibration, bench_prior};
 pub use exploration::{COVER_REACH_M, Exploration};

@@ -70,10 +70,11 @@ impl Site {
         let robot = self.calibrated_rig(&scenario.uncertainty, scenario.seed, map_index);
         let (seed, map_index) = (scenario.seed, u64::from(map_index));
         let mut learned = learning::learn_nodes(&robot, &self.node_views, &scenario.uncertainty, seed, map_index);
-        if scenario.learning.join {
-            for node in &mut learned {
+        for node in &mut learned {
+            if scenario.learning.join {
                 node.segments = learning::join_collinear(robot.rig(), &node.segments);
             }
+            learning::keep_most_telling(&mut node.segments, usize::from(scenario.learning.max_segments));
         }
         learning::write_map(&robot, scenario.learning.views, &learned)
     }

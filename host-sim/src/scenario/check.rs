@@ -31,6 +31,7 @@ impl Scenario {
         within("near_radius_m", self.near_radius_m, 0.0..=10.0, "a near start lies within 0.3 m of a node by default")?;
         within("learning.nodes", self.learning.nodes, 1..=4096, "the paper's office has 72")?;
         within("learning.views", self.learning.views, 1..=360, "12 views, 30 degrees apart, cover the circle")?;
+        within("learning.max_segments", self.learning.max_segments, 1..=u16::MAX, "700 are 8.4 kB a node")?;
         self.check_world()?;
         self.check_rig()?;
         check_localizer(&self.localizer)?;
@@ -198,6 +199,7 @@ mod tests {
         assert_eq!(refused(|s| s.seed = u64::MAX), "seed");
         assert_eq!(refused(|s| s.near_radius_m = f64::NAN), "near_radius_m");
         assert_eq!(refused(|s| s.name = "../up".to_owned()), "name");
+        assert_eq!(refused(|s| s.learning.max_segments = 0), "learning.max_segments");
         assert_eq!(refused(|s| s.rig.baseline_m = 0.0), "rig");
         assert_eq!(refused(|s| s.localizer.turn_deg = 361.0), "localizer.turn_deg");
         assert_eq!(refused(|s| s.localizer.pgh.angle_bins = 257), "localizer.pgh.angle_bins");

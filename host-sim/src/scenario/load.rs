@@ -204,7 +204,7 @@ mod tests {
     #[test]
     fn the_bundled_edgeloc_is_the_papers_world_with_our_localiser_and_one_edge_in_twenty_flipped() {
         let mut expected = Scenario { name: "edgeloc".to_owned(), ..Scenario::default() };
-        expected.learning.join = true;
+        (expected.learning.join, expected.learning.max_segments) = (true, 700);
         expected.localizer.kind = LocalizerKind::Edgeloc;
         (expected.localizer.turn_deg, expected.localizer.max_looks) = (60.0, 6);
         expected.uncertainty.polarity_flips = PolarityFlips { enabled: true, magnitude: 0.05 };

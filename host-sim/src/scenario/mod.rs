@@ -101,10 +101,12 @@ pub struct LearningSettings {
     pub views: u16,
     /// Whether pieces of one edge become one segment of the model again; not in the paper.
     pub join: bool,
+    /// The most segments of a node's model; those are kept that tell most. Not in the paper.
+    pub max_segments: u16,
 }
 
 impl Default for LearningSettings {
     fn default() -> Self {
-        Self { nodes: 72, placement: NodePlacement::Spread, views: 12, join: false }
+        Self { nodes: 72, placement: NodePlacement::Spread, views: 12, join: false, max_segments: u16::MAX }
     }
 }
