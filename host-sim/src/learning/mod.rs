@@ -10,6 +10,9 @@ mod learn;
 mod node_placement;
 mod node_views;
 mod place_nodes;
+mod places;
+mod sight_coverage;
+mod sight_placement;
 
 pub use budget::keep_most_telling;
 pub use calibrated_rig::CalibratedRig;
@@ -21,3 +24,6 @@ pub use learn::{LearnedNode, learn, learn_nodes, write_map};
 pub use node_placement::{NodePlacement, NodePlacementError, random_start};
 pub use node_views::NodeViews;
 pub use place_nodes::{PlaceNodesError, place_nodes};
+pub use places::Surroundings;
+pub use sight_coverage::{POOR_M, PoorPlace, SightCoverage, Squares};
+pub use sight_placement::{NEAR_M, place_in_sight};

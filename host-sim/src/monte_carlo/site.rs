@@ -1,6 +1,8 @@
 //! What all trials of a run share: the building, the nodes in it and what a noise-free robot saw from them.
 
-use crate::learning::{self, CalibratedRig, CalibrationBench, NodePlacementError, NodeViews};
+use crate::learning::{
+    self, CalibratedRig, CalibrationBench, NodePlacementError, NodeViews, SightCoverage, Surroundings,
+};
 use crate::scenario::Scenario;
 use crate::uncertainty::Sources;
 use crate::world::{FreeSpace, FreeSpaceError, FreeSpaceOptions, Occluders, ViewpointVisibility, WireframeWorld};
@@ -57,7 +59,13 @@ impl Site {
         scenario: &Scenario,
     ) -> Result<Self, SiteError> {
         let node_count = usize::from(scenario.learning.nodes);
-        let nodes = scenario.learning.placement.place(&world, &free_space, node_count, scenario.seed)?;
+        let surroundings = Surroundings {
+            world: &world,
+            occluders: &occluders,
+            space: &free_space,
+            eye_height_m: rig.camera_height_m,
+        };
+        let nodes = scenario.learning.placement.place(&surroundings, node_count, scenario.seed)?;
         let node_views = NodeViews::observe_all(&rig, &world, &occluders, &nodes, scenario.learning.views);
         Ok(Self { world, occluders, free_space, rig, nodes, calibration_bench, node_views })
     }
@@ -83,6 +91,14 @@ impl Site {
     #[must_use]
     pub fn calibrated_rig(&self, sources: &Sources, seed: u64, map_index: u32) -> CalibratedRig {
         self.calibration_bench.calibrated_rig(sources, seed, u64::from(map_index))
+    }
+
+    /// How well the nodes cover the free space.
+    #[must_use]
+    pub fn coverage(&self) -> SightCoverage {
+        let Self { world, occluders, free_space: space, rig, .. } = self;
+        let surroundings = Surroundings { world, occluders, space, eye_height_m: rig.camera_height_m };
+        SightCoverage::of(&surroundings, &self.nodes)
     }
 
     /// The density of the nodes: free space for each \[m2\].
