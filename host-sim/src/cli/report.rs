@@ -4,7 +4,7 @@ use super::console::{self, Format};
 use super::run::{JSON_FIELDS, RunPrinted};
 use super::scenario_args::find_setting;
 use super::trials::{behind_link, name, unchanged_world};
-use super::{summary_table, worlds};
+use super::{coverage, summary_table, worlds};
 use clap::Args;
 use edgeloc_sim::report::{FloorPlan, RunFolder, RunResults, page, to_svg_file, trials_plan};
 use edgeloc_sim::world::{FreeSpace, FreeSpaceOptions, WireframeWorld};
@@ -49,13 +49,17 @@ impl Report {
             }
         };
         let free = world.as_ref().and_then(|world| FreeSpace::of(world, &FreeSpaceOptions::default()).ok());
+        let coverage = world.as_ref().zip(free.as_ref());
+        let coverage = coverage.map(|(world, free)| coverage::of_rows(world, free, &results.scenario, &results.nodes));
+        let coverage = coverage.unwrap_or_default();
         let free = free.as_ref().map(worlds::free_cells);
-        let report = page(&results, world.as_ref(), free.as_ref(), &name(folder.path()));
+        let report = page(&results, world.as_ref(), free.as_ref(), &coverage, &name(folder.path()));
         let report = folder.write("report.html", report.as_bytes())?;
         if let Some(path) = &self.plan {
             let row = find_setting(&results.scenario, self.row.as_deref())?.row;
             let nodes = results.scenario.rows.iter().position(|other| other.name == row.name).unwrap_or(0);
             let plan = FloorPlan::new(world.as_ref(), free.as_ref(), &results.nodes[nodes]);
+            let plan = coverage.get(nodes).map(|coverage| plan.clone().with_poor_places(coverage)).unwrap_or(plan);
             let records = results.records.iter().filter(|record| record.row == row.name);
             console::write_file(path, to_svg_file(trials_plan(&plan, records)).as_bytes())?;
         }

@@ -1,6 +1,7 @@
 //! A world seen from above: every edge projected to the floor, free space tinted, nodes.
 
 use super::drawing::{drawing, tidy, tooltip};
+use crate::learning::SightCoverage;
 use crate::world::WireframeWorld;
 use edgeloc::geometry::Point2;
 use std::collections::BTreeSet;
@@ -26,6 +27,7 @@ pub struct FloorPlan {
     px_per_m: f64,
     wire: String,
     free: String,
+    poor: String,
     nodes: Vec<Point2>,
 }
 
@@ -57,11 +59,27 @@ impl FloorPlan {
         let min_m = (min_m.0 - MARGIN_M, min_m.1 - MARGIN_M);
         let size_m = (max_m.0 + MARGIN_M - min_m.0, max_m.1 + MARGIN_M - min_m.1);
         let px_per_m = (WIDTH_PX / size_m.0).min(WIDTH_PX * MAX_ASPECT / size_m.1);
-        let mut plan =
-            Self { min_m, size_m, px_per_m, wire: String::new(), free: String::new(), nodes: nodes.to_vec() };
+        let mut plan = Self {
+            min_m,
+            size_m,
+            px_per_m,
+            wire: String::new(),
+            free: String::new(),
+            poor: String::new(),
+            nodes: nodes.to_vec(),
+        };
         plan.wire = world.map_or_else(String::new, |world| plan.wire_path(world));
         plan.free = free.map_or_else(String::new, |free| plan.free_path(free));
         plan
+    }
+
+    /// The plan with the places that its nodes cover poorly.
+    #[must_use]
+    pub fn with_poor_places(mut self, coverage: &SightCoverage) -> Self {
+        let squares = &coverage.poor_squares;
+        let (centers, side_m) = (squares.points.clone(), f64::from(squares.side_m));
+        self.poor = self.free_path(&FreeCells { centers, origin: squares.origin, side_m });
+        self
     }
 
     /// An empty drawing of the plan's size.
@@ -110,10 +128,13 @@ impl FloorPlan {
             .add(Path::new().set("class", "wire").set("d", self.wire.as_str()))
     }
 
-    /// The nodes, each with its identity as a tooltip.
+    /// The nodes, each with its identity as a tooltip, and below them what they cover poorly.
     #[must_use]
     pub fn node_marks(&self) -> Group {
         let mut group = Group::new();
+        if !self.poor.is_empty() {
+            group.append(Path::new().set("class", "poor").set("d", self.poor.as_str()));
+        }
         for (id, &node) in self.nodes.iter().enumerate() {
             let (x, y) = self.to_px(node);
             let label = format!("node {id} at {:.2}, {:.2} m", node.x, node.y);
@@ -202,6 +223,7 @@ fn tenth(tenths: i64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::learning::Squares;
 
     #[test]
     fn a_plan_turns_the_world_y_axis_up() {
@@ -215,6 +237,20 @@ mod tests {
         let centers = [(0.05, 0.05), (0.15, 0.05), (0.35, 0.05)].map(|(x, y)| Point2::new(x, y)).to_vec();
         let plan = FloorPlan::new(None, Some(&FreeCells { centers, origin: Point2::new(0.0, 0.0), side_m: 0.1 }), &[]);
         assert_eq!(plan.free.matches('M').count(), 2);
+    }
+
+    #[test]
+    fn poor_places_are_drawn_as_squares_below_the_nodes() {
+        let points = [(0.31, 0.02), (0.17, 0.02)].map(|(x, y)| Point2::new(x, y)).to_vec();
+        let coverage = SightCoverage {
+            poor_squares: Squares { points, origin: Point2::new(0.0, 0.0), side_m: 0.15 },
+            ..SightCoverage::default()
+        };
+        let plan = FloorPlan::new(None, None, &[Point2::new(1.0, 1.0)]);
+        assert!(!plan.node_marks().to_string().contains("poor"));
+        let plan = plan.with_poor_places(&coverage);
+        assert_eq!(plan.poor.matches('M').count(), 1, "neighbours are joined: {}", plan.poor);
+        assert!(plan.node_marks().to_string().contains("class=\"poor\""));
     }
 
     #[test]
