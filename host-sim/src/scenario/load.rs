@@ -184,6 +184,7 @@ fn span_in(table: &DeTable<'_>, path: &[&str]) -> Option<Range<usize>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::learning::NodePlacement;
     use crate::scenario::{Building, LocalizerKind, Start, VisibilityChoice, WorldChoice};
     use crate::uncertainty::PolarityFlips;
     use std::path::PathBuf;
@@ -204,6 +205,7 @@ mod tests {
     #[test]
     fn the_bundled_edgeloc_is_the_papers_world_with_our_localiser_and_one_edge_in_twenty_flipped() {
         let mut expected = Scenario { name: "edgeloc".to_owned(), ..Scenario::default() };
+        expected.learning.placement = NodePlacement::Coverage;
         (expected.learning.join, expected.learning.max_segments) = (true, 700);
         expected.localizer.kind = LocalizerKind::Edgeloc;
         (expected.localizer.turn_deg, expected.localizer.max_looks) = (60.0, 6);
