@@ -42,6 +42,22 @@ fn json(text: &str) -> serde_json::Value {
 }
 
 #[test]
+fn learning_tells_and_draws_where_nodes_cover_a_building_poorly() {
+    let folder = folder();
+    let learn = ["learn", "smoke", "--nodes", "4", "--set", "learning.placement=coverage", "--plan", "plan.svg"];
+    let learned = edgeloc(folder.path(), &learn);
+    assert!(learned.status.success(), "{learned:?}");
+    let told = String::from_utf8_lossy(&learned.stderr);
+    for part in ["4 nodes: ", "of free space has a node in sight within 1 m", "poorly covered: "] {
+        assert!(told.contains(part), "{told:?} lacks {part:?}");
+    }
+    let plan = std::fs::read_to_string(folder.path().join("plan.svg")).expect("a drawing");
+    assert!(plan.contains("class=\"poor\"") && plan.matches("class=\"node\"").count() == 4);
+    let refusal = failed(folder.path(), &[&learn[..], &["-o", "other.edgemap"]].concat(), 1);
+    assert!(refusal.contains("plan.svg exists") && !folder.path().join("other.edgemap").exists(), "{refusal}");
+}
+
+#[test]
 fn the_help_of_every_verb_has_an_example() {
     let folder = folder();
     for verb in [

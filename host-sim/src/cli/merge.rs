@@ -3,7 +3,7 @@
 use super::console::{self, Format};
 use super::run::{JSON_FIELDS, RunPrinted};
 use super::trials::{behind_link, name, unchanged_world};
-use super::{summary_table, worlds};
+use super::{coverage, summary_table, worlds};
 use clap::Args;
 use edgeloc_sim::report::{RunFolder, ShardResults, merge, page};
 use edgeloc_sim::world::{FreeSpace, FreeSpaceOptions};
@@ -46,11 +46,14 @@ impl Merge {
         let world = unchanged_world(&results.scenario, &results.manifest);
         let world = world.map_err(|error| console::remark(&format!("the report goes without the world: {error}"))).ok();
         let free = world.as_ref().and_then(|world| FreeSpace::of(world, &FreeSpaceOptions::default()).ok());
+        let coverage = world.as_ref().zip(free.as_ref());
+        let coverage = coverage.map(|(world, free)| coverage::of_rows(world, free, &results.scenario, &results.nodes));
+        let coverage = coverage.unwrap_or_default();
         let free = free.as_ref().map(|free| worlds::free_cells_of_run(free, &results.scenario));
 
         let date = jiff::Zoned::now().strftime("%Y-%m-%d").to_string();
         let folder = RunFolder::create(&self.out, &date, &results.scenario.name)?;
-        let report = page(&results, world.as_ref(), free.as_ref(), &name(folder.path()));
+        let report = page(&results, world.as_ref(), free.as_ref(), &coverage, &name(folder.path()));
         folder.write("report.html", report.as_bytes())?;
         folder.write_results(&results, &look_times)?;
         if let Err(error) = folder.link_latest() {

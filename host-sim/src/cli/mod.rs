@@ -7,6 +7,7 @@ mod attempt;
 mod calibrate;
 mod compare;
 mod console;
+mod coverage;
 mod demo;
 mod explore;
 mod figures;

@@ -4,7 +4,7 @@ use super::console::{self, Format};
 use super::run::{JSON_FIELDS, RunPrinted};
 use super::scenario_args::find_setting;
 use super::trials::{behind_link, name, unchanged_world};
-use super::{summary_table, worlds};
+use super::{coverage, summary_table, worlds};
 use clap::Args;
 use edgeloc_sim::report::{FloorPlan, RunFolder, RunResults, page, to_svg_file, trials_plan};
 use edgeloc_sim::world::{FreeSpace, FreeSpaceOptions, WireframeWorld};
@@ -49,8 +49,11 @@ impl Report {
             }
         };
         let free = world.as_ref().and_then(|world| FreeSpace::of(world, &FreeSpaceOptions::default()).ok());
+        let coverage = world.as_ref().zip(free.as_ref());
+        let coverage = coverage.map(|(world, free)| coverage::of_rows(world, free, &results.scenario, &results.nodes));
+        let coverage = coverage.unwrap_or_default();
         let free = free.as_ref().map(|free| worlds::free_cells_of_run(free, &results.scenario));
-        let report = page(&results, world.as_ref(), free.as_ref(), &name(folder.path()));
+        let report = page(&results, world.as_ref(), free.as_ref(), &coverage, &name(folder.path()));
         let report = folder.write("report.html", report.as_bytes())?;
         if let Some(path) = &self.plan {
             let row = find_setting(&results.scenario, self.row.as_deref())?.row;
@@ -58,6 +61,9 @@ impl Report {
             let mut plan = FloorPlan::new(world.as_ref(), free.as_ref(), &results.nodes[nodes]);
             if let Some(free) = &free {
                 plan = plan.with_withheld(free, free.withheld.get(nodes).map_or(&[], Vec::as_slice));
+            }
+            if let Some(coverage) = coverage.get(nodes) {
+                plan = plan.with_poor_places(coverage);
             }
             let records = results.records.iter().filter(|record| record.row == row.name);
             console::write_file(path, to_svg_file(trials_plan(&plan, records)).as_bytes())?;

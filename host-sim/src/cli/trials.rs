@@ -2,7 +2,7 @@
 //! `learn` and `locate` do too.
 
 use super::progress::{self, TrialProgress};
-use super::{console, interruption, worlds};
+use super::{console, coverage, interruption, worlds};
 use clap::Args;
 use edgeloc_sim::monte_carlo::{self, Part, RunOutcome, Shard, Site, Sites, TimedTrial};
 use edgeloc_sim::report::{Journal, Manifest, RunFolder, RunResults, RunTimings, Summary, WorldFacts, page};
@@ -44,9 +44,13 @@ pub(super) fn prepare(scenario: &Scenario) -> Result<Site> {
 
 /// Makes a world ready for every row of the scenario.
 fn prepare_rows(world: WireframeWorld, scenario: &Scenario) -> Result<Sites> {
-    let _wheel = progress::wheel("looking around in the world");
+    let wheel = progress::wheel("looking around in the world");
     let sites = Sites::prepare(world, scenario).into_diagnostic()?;
+    drop(wheel);
     info!("{}", sites.all()[0].free_space.describe());
+    for site in sites.all() {
+        coverage::tell(site.nodes.len(), &site.coverage());
+    }
     Ok(sites)
 }
 
@@ -174,7 +178,8 @@ impl Running {
             scenario,
         };
         let free = worlds::free_cells_of_run(&site.free_space, &results.scenario);
-        let report = page(&results, Some(&site.world), Some(&free), &name(folder.path()));
+        let coverage = coverage::of_rows(&site.world, &site.free_space, &results.scenario, &results.nodes);
+        let report = page(&results, Some(&site.world), Some(&free), &coverage, &name(folder.path()));
         folder.write("report.html", report.as_bytes())?;
         folder.write_results(&results, &look_times)?;
         Ok((folder, results))

@@ -1,8 +1,9 @@
-//! Where the nodes of a map go: spread over the free space, or dropped along a path that the robot explored.
+//! Where the nodes of a map go: spread over the free space, to where they are in sight, or dropped along a path that the
+//! robot explored.
 
-use super::{ExplorationError, ExploringRobot, PlaceNodesError, explore, place_nodes};
+use super::{ExplorationError, ExploringRobot, PlaceNodesError, Surroundings, explore, place_in_sight, place_nodes};
 use crate::random::Stream;
-use crate::world::{FreeSpace, RangeSensorOptions, WireframeWorld};
+use crate::world::{FreeSpace, RangeSensorOptions};
 use edgeloc::geometry::Point2;
 use serde::{Deserialize, Serialize};
 
@@ -13,24 +14,27 @@ pub enum NodePlacement {
     /// Spread evenly over the free space ([`place_nodes`]).
     #[default]
     Spread,
+    /// So that nearly every place has one near it in sight ([`place_in_sight`]).
+    Coverage,
     /// Dropped evenly along the path of a robot that explores ([`explore()`]), as the paper has it.
     Explore,
 }
 
 impl NodePlacement {
-    /// Places `count` nodes in the free `space` of `world`; `seed` selects where either way begins.
+    /// Places `count` nodes in the free space of a building; `seed` selects where each way begins.
     ///
     /// # Errors
     /// When there is no room for so many, or the world can't be explored.
     pub fn place(
         self,
-        world: &WireframeWorld,
-        space: &FreeSpace,
+        surroundings: &Surroundings<'_>,
         count: usize,
         seed: u64,
     ) -> Result<Vec<Point2>, NodePlacementError> {
+        let Surroundings { world, space, .. } = *surroundings;
         match self {
             Self::Spread => Ok(place_nodes(space, count, seed)?),
+            Self::Coverage => Ok(place_in_sight(surroundings, count, seed)?),
             Self::Explore => {
                 let robot = ExploringRobot::new(world, space, &RangeSensorOptions::default());
                 let exploration = explore(space, &robot, random_start(space, seed), seed, |_| {})?;

@@ -1,7 +1,8 @@
 //! What all trials of a run share: the building, the nodes in it and what a noise-free robot saw from them.
 
 use crate::learning::{
-    self, CalibratedRig, CalibrationBench, NodePlacementError, NodeViews, UNLEARNED_WAY_M, Withheld,
+    self, CalibratedRig, CalibrationBench, NodePlacementError, NodeViews, SightCoverage, Surroundings, UNLEARNED_WAY_M,
+    Withheld,
 };
 use crate::scenario::{Scenario, Start};
 use crate::uncertainty::Sources;
@@ -63,7 +64,13 @@ impl Site {
         scenario: &Scenario,
     ) -> Result<Self, SiteError> {
         let node_count = usize::from(scenario.learning.nodes);
-        let mut nodes = scenario.learning.placement.place(&world, &free_space, node_count, scenario.seed)?;
+        let surroundings = Surroundings {
+            world: &world,
+            occluders: &occluders,
+            space: &free_space,
+            eye_height_m: rig.camera_height_m,
+        };
+        let mut nodes = scenario.learning.placement.place(&surroundings, node_count, scenario.seed)?;
         let withheld = Withheld::grow(&free_space, scenario.learning.withheld, scenario.seed);
         nodes.retain(|&node| !withheld.contains(&free_space, node));
         if nodes.is_empty() {
@@ -93,10 +100,11 @@ impl Site {
         let robot = self.calibrated_rig(&scenario.uncertainty, scenario.seed, map_index);
         let (seed, map_index) = (scenario.seed, u64::from(map_index));
         let mut learned = learning::learn_nodes(&robot, &self.node_views, &scenario.uncertainty, seed, map_index);
-        if scenario.learning.join {
-            for node in &mut learned {
+        for node in &mut learned {
+            if scenario.learning.join {
                 node.segments = learning::join_collinear(robot.rig(), &node.segments);
             }
+            learning::keep_most_telling(&mut node.segments, usize::from(scenario.learning.max_segments));
         }
         learning::write_map(&robot, scenario.learning.views, &learned)
     }
@@ -105,6 +113,14 @@ impl Site {
     #[must_use]
     pub fn calibrated_rig(&self, sources: &Sources, seed: u64, map_index: u32) -> CalibratedRig {
         self.calibration_bench.calibrated_rig(sources, seed, u64::from(map_index))
+    }
+
+    /// How well the nodes cover the free space.
+    #[must_use]
+    pub fn coverage(&self) -> SightCoverage {
+        let Self { world, occluders, free_space: space, rig, .. } = self;
+        let surroundings = Surroundings { world, occluders, space, eye_height_m: rig.camera_height_m };
+        SightCoverage::of(&surroundings, &self.nodes)
     }
 
     /// The density of the nodes: free space for each \[m2\], without what is withheld.

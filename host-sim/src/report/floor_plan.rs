@@ -1,6 +1,7 @@
 //! A world seen from above: every edge projected to the floor, free space tinted, nodes.
 
 use super::drawing::{drawing, tidy, tooltip};
+use crate::learning::SightCoverage;
 use crate::world::WireframeWorld;
 use edgeloc::geometry::Point2;
 use std::collections::BTreeSet;
@@ -27,6 +28,7 @@ pub struct FloorPlan {
     wire: String,
     free: String,
     withheld: String,
+    poor: String,
     nodes: Vec<Point2>,
 }
 
@@ -67,6 +69,7 @@ impl FloorPlan {
             wire: String::new(),
             free: String::new(),
             withheld: String::new(),
+            poor: String::new(),
             nodes: nodes.to_vec(),
         };
         plan.wire = world.map_or_else(String::new, |world| plan.wire_path(world));
@@ -78,6 +81,15 @@ impl FloorPlan {
     #[must_use]
     pub fn with_withheld(mut self, free: &FreeCells, centers: &[Point2]) -> Self {
         self.withheld = self.free_path(&FreeCells { centers: centers.to_vec(), ..free.clone() });
+        self
+    }
+
+    /// The plan with the places that its nodes cover poorly.
+    #[must_use]
+    pub fn with_poor_places(mut self, coverage: &SightCoverage) -> Self {
+        let squares = &coverage.poor_squares;
+        let (centers, side_m) = (squares.points.clone(), f64::from(squares.side_m));
+        self.poor = self.free_path(&FreeCells { centers, origin: squares.origin, side_m, withheld: Vec::new() });
         self
     }
 
@@ -127,13 +139,16 @@ impl FloorPlan {
             .add(Path::new().set("class", "wire").set("d", self.wire.as_str()))
     }
 
-    /// What learning left out, and the nodes, each with its identity as a tooltip.
+    /// What learning left out and what the nodes cover poorly, and the nodes, each with its identity as a tooltip.
     #[must_use]
     pub fn node_marks(&self) -> Group {
         let mut group = Group::new();
         if !self.withheld.is_empty() {
             let withheld = Path::new().set("class", "withheld").set("d", self.withheld.as_str());
             group.append(withheld.add(tooltip("not learned")));
+        }
+        if !self.poor.is_empty() {
+            group.append(Path::new().set("class", "poor").set("d", self.poor.as_str()));
         }
         for (id, &node) in self.nodes.iter().enumerate() {
             let (x, y) = self.to_px(node);
@@ -223,6 +238,7 @@ fn tenth(tenths: i64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::learning::Squares;
 
     #[test]
     fn a_plan_turns_the_world_y_axis_up() {
@@ -240,6 +256,20 @@ mod tests {
             &[],
         );
         assert_eq!(plan.free.matches('M').count(), 2);
+    }
+
+    #[test]
+    fn poor_places_are_drawn_as_squares_below_the_nodes() {
+        let points = [(0.31, 0.02), (0.17, 0.02)].map(|(x, y)| Point2::new(x, y)).to_vec();
+        let coverage = SightCoverage {
+            poor_squares: Squares { points, origin: Point2::new(0.0, 0.0), side_m: 0.15 },
+            ..SightCoverage::default()
+        };
+        let plan = FloorPlan::new(None, None, &[Point2::new(1.0, 1.0)]);
+        assert!(!plan.node_marks().to_string().contains("poor"));
+        let plan = plan.with_poor_places(&coverage);
+        assert_eq!(plan.poor.matches('M').count(), 1, "neighbours are joined: {}", plan.poor);
+        assert!(plan.node_marks().to_string().contains("class=\"poor\""));
     }
 
     #[test]

@@ -6,6 +6,7 @@ use super::{
     AnswerFigures, FloorPlan, FreeCells, Manifest, PAPER_INTERVAL, RowSummary, RunResults, Share, Summary,
     looks_histogram, rate_strip, reliability, reliability_chart, success_by_distance, trial_marks, worst_trials,
 };
+use crate::learning::{POOR_M, SightCoverage};
 use crate::monte_carlo::{Outcome, TrialRecord};
 use crate::scenario::{Row, Start};
 use crate::world::WireframeWorld;
@@ -21,13 +22,24 @@ const DRAWN_ROWS: usize = 12;
 
 /// The report of a run. `folder` is how commands name its folder.
 ///
-/// Without the world or its free space the plan shows what is left.
+/// `coverage` is that of each row's nodes. Without the world, its free space or the coverage the plan shows what is left.
 #[must_use]
-pub fn page(results: &RunResults, world: Option<&WireframeWorld>, free: Option<&FreeCells>, folder: &str) -> String {
+pub fn page(
+    results: &RunResults,
+    world: Option<&WireframeWorld>,
+    free: Option<&FreeCells>,
+    coverage: &[SightCoverage],
+    folder: &str,
+) -> String {
     let plan = |(row, nodes): (usize, &Vec<Point2>)| {
-        let plan = FloorPlan::new(world, free, nodes);
-        let withheld = free.and_then(|free| Some((free, free.withheld.get(row)?)));
-        withheld.map_or(plan.clone(), |(free, centers)| plan.with_withheld(free, centers))
+        let mut plan = FloorPlan::new(world, free, nodes);
+        if let Some((free, centers)) = free.and_then(|free| Some((free, free.withheld.get(row)?))) {
+            plan = plan.with_withheld(free, centers);
+        }
+        if let Some(coverage) = coverage.get(row) {
+            plan = plan.with_poor_places(coverage);
+        }
+        plan
     };
     let plans: Vec<FloorPlan> = results.nodes.iter().enumerate().map(plan).collect();
     let title = format!("edgeloc run: {}", results.scenario.name);
@@ -38,7 +50,7 @@ pub fn page(results: &RunResults, world: Option<&WireframeWorld>, free: Option<&
         (self::plans(results, &plans))
         (looks(results))
         (worst(results, folder))
-        (facts(results, world.is_some()))
+        (facts(results, world.is_some(), coverage))
         (configuration(results))
     };
     document(&title, &subtitle(results), &body)
@@ -211,6 +223,7 @@ fn plans(results: &RunResults, plans: &[FloorPlan]) -> Markup {
             li { span.key.kgood {} "success" } li { span.key.kbad {} "failure" } li { span.key.kunknown {} "can't tell" }
             li { span.key.knode {} "node" } li { span.key.kfree {} "free space" }
             @if rows.iter().any(|row| row.start == Start::Unlearned) { li { span.key.kwithheld {} "not learned" } }
+            li { span.key.kpoor {} "no node in sight within " (POOR_M) " m" }
         }
         (inline(&shared))
         div.panels {
@@ -286,7 +299,7 @@ fn quoted(word: &str) -> String {
     if is_plain { word.to_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }
 }
 
-fn facts(results: &RunResults, has_world: bool) -> Markup {
+fn facts(results: &RunResults, has_world: bool, coverages: &[SightCoverage]) -> Markup {
     let RunResults { manifest, summary, timings, scenario, .. } = results;
     let (world, host) = (&manifest.world, &manifest.host);
     let views = scenario.learning.views;
@@ -301,6 +314,9 @@ fn facts(results: &RunResults, has_world: bool) -> Markup {
                 dt { "checksum" } dd { code { (world.checksum) } }
                 dt { "map" } dd { (values(summary, |row| row.nodes.to_string())) " nodes of " (views) " views, " (values(summary, |row| format!("{:.0}", row.map.mean_segments_per_node))) " segments a node" }
                 dt { "density" } dd { "a node for each " (values(summary, |row| format!("{:.1}", row.map.free_m2_per_node))) " m² of free space" }
+                @if let Some(coverage) = coverages.first() {
+                    dt { "coverage" } dd { (coverage.describe()) @if coverages.iter().any(|other| other != coverage) { " (first row)" } }
+                }
                 dt { "map size" } dd { (values(summary, |row| format!("{:.0}", row.map.mean_bytes / 1e3))) " kB" }
                 dt { "noise draws" } dd { "the map is learned anew every " (scenario.trials_per_map) " trials" }
             }
@@ -361,7 +377,8 @@ mod tests {
     #[test]
     fn the_page_is_self_contained_and_complete() {
         let sample = sample::run();
-        let page = page(&sample.results, Some(&sample.world), Some(&sample.free), "runs/2026-01-02-hall");
+        let page =
+            page(&sample.results, Some(&sample.world), Some(&sample.free), &sample.coverage, "runs/2026-01-02-hall");
         for part in [
             "Answers",
             "false accepts",
@@ -369,6 +386,8 @@ mod tests {
             "edgeloc replay runs/2026-01-02-hall --row",
             "[localizer.pgh]",
             "<title>",
+            "class=\"poor\"",
+            "a node in sight within 1 m",
         ] {
             assert!(page.contains(part), "the page lacks {part:?}");
         }
@@ -380,18 +399,18 @@ mod tests {
 
     #[test]
     fn a_page_without_the_world_is_still_a_page() {
-        let page = page(&sample::run().results, None, None, "runs/x");
+        let page = page(&sample::run().results, None, None, &[], "runs/x");
         assert!(page.contains("Where it worked"));
     }
 
     #[test]
     fn probabilities_have_a_reliability_curve() {
         let mut results = sample::run().results;
-        let without = page(&results, None, None, "runs/x");
+        let without = page(&results, None, None, &[], "runs/x");
         results.records.iter_mut().for_each(|record| record.probability = Some(0.9));
         let nodes = results.nodes.clone();
         results.summary = Summary::new(&results.scenario, &nodes, 120.0, &results.records);
-        let with = page(&results, None, None, "runs/x");
+        let with = page(&results, None, None, &[], "runs/x");
         assert!(!without.contains("Are the probabilities honest?") && with.contains("Are the probabilities honest?"));
         assert!(with.contains("stated 90.0 %"));
     }
@@ -400,7 +419,7 @@ mod tests {
     fn names_are_escaped_in_markup_and_shell() {
         let mut results = sample::run().results;
         results.manifest.world.name = "<b>".to_owned();
-        assert!(!page(&results, None, None, "it's").contains("<b>"));
+        assert!(!page(&results, None, None, &[], "it's").contains("<b>"));
         assert_eq!(quoted("it's"), r"'it'\''s'");
     }
 }

@@ -1,5 +1,6 @@
 //! A made-up run for tests of drawings and tables.
 
+use crate::learning::{SightCoverage, Squares};
 use crate::monte_carlo::{Outcome, TrialRecord};
 use crate::random::Stream;
 use crate::report::{FreeCells, LookExplanation, Manifest, RunResults, RunTimings, Summary, WorldFacts};
@@ -15,6 +16,7 @@ pub(crate) struct Sample {
     pub(crate) results: RunResults,
     pub(crate) world: WireframeWorld,
     pub(crate) free: FreeCells,
+    pub(crate) coverage: Vec<SightCoverage>,
 }
 
 /// A hall of 20 x 15 m with boxes, 48 nodes and 60 trials of each row whose success falls with distance.
@@ -45,7 +47,15 @@ pub(crate) fn run() -> Sample {
     let facts = WorldFacts::new(&world, &scenario.world);
     let manifest = Manifest::new(&scenario, facts, 2, None, records.len(), jiff::Timestamp::UNIX_EPOCH).finished();
     let results = RunResults { manifest, scenario, nodes, records, summary, timings };
-    Sample { results, world, free: FreeCells { centers, origin: Point2::default(), side_m: 0.1, withheld: Vec::new() } }
+    let points = vec![Point2::new(0.55, 0.55)];
+    let poor_squares = Squares { points, origin: Point2::default(), side_m: 0.1 };
+    let coverage = vec![SightCoverage { poor_squares, ..SightCoverage::default() }; results.nodes.len()];
+    Sample {
+        results,
+        world,
+        free: FreeCells { centers, origin: Point2::default(), side_m: 0.1, withheld: Vec::new() },
+        coverage,
+    }
 }
 
 fn record(stream: &mut Stream, row: &str, start: Start, trial: u32, nodes: &[Point2]) -> TrialRecord {

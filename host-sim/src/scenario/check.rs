@@ -32,6 +32,7 @@ impl Scenario {
         within("learning.nodes", self.learning.nodes, 1..=4096, "the paper's office has 72")?;
         within("learning.withheld", self.learning.withheld, 0.0..=0.9, "0.25 leaves places that no map knows")?;
         within("learning.views", self.learning.views, 1..=360, "12 views, 30 degrees apart, cover the circle")?;
+        within("learning.max_segments", self.learning.max_segments, 1..=u16::MAX, "700 are 8.4 kB a node")?;
         self.check_world()?;
         self.check_rig()?;
         check_localizer(&self.localizer)?;
@@ -199,6 +200,7 @@ mod tests {
         assert_eq!(refused(|s| s.seed = u64::MAX), "seed");
         assert_eq!(refused(|s| s.near_radius_m = f64::NAN), "near_radius_m");
         assert_eq!(refused(|s| s.name = "../up".to_owned()), "name");
+        assert_eq!(refused(|s| s.learning.max_segments = 0), "learning.max_segments");
         assert_eq!(refused(|s| s.rig.baseline_m = 0.0), "rig");
         assert_eq!(refused(|s| s.localizer.turn_deg = 361.0), "localizer.turn_deg");
         assert_eq!(refused(|s| s.localizer.pgh.angle_bins = 257), "localizer.pgh.angle_bins");

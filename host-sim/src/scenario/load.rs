@@ -183,6 +183,7 @@ fn span_in(table: &DeTable<'_>, path: &[&str]) -> Option<Range<usize>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::learning::NodePlacement;
     use crate::scenario::{Building, LocalizerKind, Start, VisibilityChoice, WorldChoice};
     use crate::uncertainty::PolarityFlips;
     use std::path::PathBuf;
@@ -204,6 +205,8 @@ mod tests {
     fn the_bundled_edgeloc_has_the_default_localiser_and_one_edge_in_twenty_flipped() {
         let edgeloc = Scenario::load("edgeloc", &[]).expect("bundled");
         let mut expected = Scenario { name: "edgeloc".to_owned(), rows: edgeloc.rows.clone(), ..Scenario::default() };
+        expected.learning.placement = NodePlacement::Coverage;
+        expected.learning.max_segments = 700;
         expected.uncertainty.polarity_flips = PolarityFlips { enabled: true, magnitude: 0.05 };
         expected.learning.join = true;
         expected.localizer.kind = LocalizerKind::Edgeloc;

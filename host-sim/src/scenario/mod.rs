@@ -101,13 +101,22 @@ pub struct LearningSettings {
     pub views: u16,
     /// Whether pieces of one edge become one segment of the model again; not in the paper.
     pub join: bool,
+    /// The most segments of a node's model; those are kept that tell most. Not in the paper.
+    pub max_segments: u16,
     /// Share of the free space, one connected part, whose nodes are not learned; for rows that start unlearned.
     pub withheld: f64,
 }
 
 impl Default for LearningSettings {
     fn default() -> Self {
-        Self { nodes: 72, placement: NodePlacement::Spread, views: 12, join: false, withheld: 0.0 }
+        Self {
+            nodes: 72,
+            placement: NodePlacement::Spread,
+            views: 12,
+            join: false,
+            max_segments: u16::MAX,
+            withheld: 0.0,
+        }
     }
 }
 
