@@ -438,14 +438,9 @@ fn shards_merge_into_the_whole_run_and_wrong_folders_are_named() {
     assert!(too_many.contains("too few for 9 shards"), "{too_many}");
 }
 
+/// Interrupts a run that writes to `runs` once some of its trials ended; what it says then.
 #[cfg(unix)]
-#[test]
-fn an_interrupted_run_says_how_to_go_on_and_ends_with_the_same_bytes() {
-    let folder = folder();
-    let path = folder.path();
-    let arguments = ["run", "smoke", "--nodes", "4", "--trials", "80", "--format", "json"];
-    let whole = json(&done(path, &[&arguments[..], &["--out", "whole"]].concat()));
-
+fn interrupted(path: &Path, arguments: &[&str]) -> String {
     let mut command = Command::new(env!("CARGO_BIN_EXE_edgeloc"));
     command.current_dir(path).args(arguments).stdout(std::process::Stdio::null()).stderr(std::process::Stdio::piped());
     let child = command.spawn().expect("the binary starts");
@@ -457,9 +452,32 @@ fn an_interrupted_run_says_how_to_go_on_and_ends_with_the_same_bytes() {
     }
     let id = child.id().to_string();
     assert!(Command::new("kill").args(["-INT", &id]).status().is_ok_and(|status| status.success()));
-    let interrupted = child.wait_with_output().expect("it ends");
-    let words = String::from_utf8_lossy(&interrupted.stderr);
-    assert_eq!(interrupted.status.code(), Some(1), "{words}");
+    let output = child.wait_with_output().expect("it ends");
+    let words = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{words}");
+    words
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_study_goes_on_as_a_study() {
+    let folder = folder();
+    let path = folder.path();
+    std::fs::write(path.join("study.toml"), STUDY).expect("written");
+    let words = interrupted(path, &["figures", "study.toml", "--trials", "80"]);
+    assert!(words.contains("edgeloc figures --resume runs/20"), "{words}");
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_says_how_to_go_on_and_ends_with_the_same_bytes() {
+    let folder = folder();
+    let path = folder.path();
+    let arguments = ["run", "smoke", "--nodes", "4", "--trials", "80", "--format", "json"];
+    let whole = json(&done(path, &[&arguments[..], &["--out", "whole"]].concat()));
+
+    let words = interrupted(path, &arguments);
+    let journal = path.join("runs/latest/journal.ndjson");
     assert!(words.contains("edgeloc run --resume runs/20") && words.contains("of 160 trials are kept"), "{words}");
 
     for verb in [&["report", "runs/latest"][..], &["replay", "runs/latest", "--trial", "0"], &["merge", "runs/latest"]]

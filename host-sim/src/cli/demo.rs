@@ -29,13 +29,16 @@ impl Demo {
         let Some(scenario) = self.changes.load("paper")? else { return Ok(()) };
         if self.format == Format::Text {
             console::print(&format!(
-                "A robot wakes up somewhere in an office that it has learned before: {} nodes of {} views each.\n\
+                "A robot wakes up somewhere in an office that it has learned before: {} of {} each.\n\
                  It looks around, matches the straight edges it sees, and says at which node it is; {} times a row.\n\
                  near: within {} m of a node; anywhere: anywhere in free space. Right is one of the two nearest nodes.\n",
-                scenario.learning.nodes, scenario.learning.views, scenario.trials, scenario.near_radius_m,
+                console::count(scenario.learning.nodes, "node"),
+                console::count(scenario.learning.views, "view"),
+                scenario.trials,
+                scenario.near_radius_m,
             ))?;
         }
-        let (folder, results) = trials::run(scenario, &self.how)?;
+        let (folder, results) = trials::run(scenario, &self.how, None, "run")?;
         if self.format == Format::Json {
             return console::print_json(&RunPrinted { folder: folder.path(), summary: &results.summary });
         }

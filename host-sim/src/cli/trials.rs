@@ -49,16 +49,12 @@ fn prepare_rows(world: WireframeWorld, scenario: &Scenario) -> Result<Sites> {
     Ok(sites)
 }
 
-/// Runs a scenario in a new folder.
-pub(super) fn run(scenario: Scenario, arguments: &RunArguments) -> Result<(RunFolder, RunResults)> {
-    run_shard(scenario, arguments, None)
-}
-
-/// Runs a scenario, or a shard of it, in a new folder.
-pub(super) fn run_shard(
+/// Runs a scenario, or a shard of it, in a new folder; `verb` is the one that goes on with it.
+pub(super) fn run(
     scenario: Scenario,
     arguments: &RunArguments,
     shard: Option<Shard>,
+    verb: &'static str,
 ) -> Result<(RunFolder, RunResults)> {
     let (started, start) = (jiff::Timestamp::now(), Instant::now());
     let trials = shard.map(|shard| shard.trials(&scenario)).transpose().into_diagnostic()?;
@@ -76,11 +72,11 @@ pub(super) fn run_shard(
     if let Err(error) = folder.link_latest() {
         console::remark(&format!("the run goes on, but {error}"));
     }
-    Running { pool, sites, folder, manifest, scenario, trials, prepare_time: start.elapsed() }.finish()
+    Running { pool, sites, folder, manifest, scenario, trials, prepare_time: start.elapsed(), verb }.finish()
 }
 
-/// Goes on with a run that was interrupted.
-pub(super) fn resume(path: &Path, threads: Option<u16>) -> Result<(RunFolder, RunResults)> {
+/// Goes on with a run that was interrupted; `verb` is the one that does so.
+pub(super) fn resume(path: &Path, threads: Option<u16>, verb: &'static str) -> Result<(RunFolder, RunResults)> {
     let start = Instant::now();
     let (folder, manifest, scenario) = RunFolder::open_unfinished(&behind_link(path))?;
     let same = Manifest::new(&scenario, manifest.world.clone(), 0, None, 0, jiff::Timestamp::now());
@@ -100,7 +96,7 @@ pub(super) fn resume(path: &Path, threads: Option<u16>) -> Result<(RunFolder, Ru
     let pool = thread_pool(threads)?;
     let sites = pool.install(|| prepare_rows(world, &scenario))?;
     let trials = trials.unwrap_or(0..sites.trials());
-    Running { pool, sites, folder, manifest, scenario, trials, prepare_time: start.elapsed() }.finish()
+    Running { pool, sites, folder, manifest, scenario, trials, prepare_time: start.elapsed(), verb }.finish()
 }
 
 /// A run under way.
@@ -112,6 +108,7 @@ struct Running {
     scenario: Scenario,
     trials: Range<u32>,
     prepare_time: Duration,
+    verb: &'static str,
 }
 
 impl Running {
@@ -146,7 +143,7 @@ impl Running {
         closed?;
         if !is_complete {
             return Err(miette!(
-                help = format!("go on with: edgeloc run --resume {folder}"),
+                help = format!("go on with: edgeloc {} --resume {folder}", self.verb),
                 "the run was interrupted"
             ));
         }
