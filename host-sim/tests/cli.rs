@@ -369,7 +369,9 @@ fn a_rig_is_calibrated_from_its_own_corners_and_from_a_file_of_corners() {
 
     let header = "left_x_px,left_y_px,right_x_px,right_y_px\n";
     std::fs::write(path.join("pairs.csv"), format!("{header}100,100,80,100\n300,200,290,200.1\n")).expect("a file");
-    let words = done(path, &["calibrate", "smoke", "--corners", "pairs.csv"]);
+    let output = edgeloc(path, &["calibrate", "smoke", "--corners", "pairs.csv"]);
+    let (words, remarks) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    assert!(remarks.contains("2 corner pairs can't tell") && remarks.contains("the prior"), "{remarks}");
     assert!(words.contains("2 corner pairs used") && words.contains("translation along x"), "{words}");
     std::fs::write(path.join("other.csv"), "a,b\n1,2\n").expect("a file");
     let error = failed(path, &["calibrate", "smoke", "--corners", "other.csv"], 1);
@@ -387,6 +389,9 @@ fn the_power_of_a_comparison_is_told_before_a_run() {
     assert!(trials("trials_paired_at_best") < trials("trials_paired"), "{told}");
     assert!(trials("trials_paired") < trials("trials_unpaired"), "{told}");
     assert!(done(path, &["power", "0.93", "0.90", "--trials", "900"]).contains("900 trials of each setting detect"));
+    assert!(
+        done(path, &["power", "0.93", "0.90", "--trials", "2"]).contains("can't detect even a fall from 93.0 % to 0")
+    );
     for (arguments, expected) in [
         (&["power", "0.9", "0.9"][..], "equal rates"),
         (&["power", "93", "90"], "0.93"),
@@ -490,6 +495,40 @@ fn a_search_repeats_resumes_and_gives_a_preset_that_runs() {
     }
 }
 
+#[test]
+fn a_search_that_is_refused_leaves_nothing_and_one_that_runs_is_the_latest() {
+    let folder = folder();
+    let path = folder.path();
+    let few = failed(path, &["optimise", "--trials-total", "5"], 1);
+    assert!(few.contains("too small for 31 settings") && few.contains("at least 517"), "{few}");
+    let nodes = ["optimise", "smoke", "--trials-total", "60", "--settings", "2", "--axis", "learning.nodes=5000,6000"];
+    let crowded = failed(path, &nodes, 1);
+    assert!(crowded.contains("5000") || crowded.contains("6000"), "{crowded}");
+    let folders = |path: &Path| std::fs::read_dir(path).map_or(0, Iterator::count);
+    assert_eq!(folders(&path.join("runs")), 0, "{crowded}");
+
+    let axis = ["--axis", "localizer.score_margin=0.0,0.1", "--set", "learning.nodes=4", "--format", "json"];
+    let ask = ["optimise", "smoke", "--trials-total", "30", "--settings", "2", "--finalists", "1"];
+    let search = json(&done(path, &[&ask[..], &axis].concat()));
+    let latest = path.join("runs/latest").canonicalize().expect("a link");
+    assert_eq!(latest, path.join(search["folder"].as_str().expect("a path")).canonicalize().expect("a folder"));
+}
+
+#[test]
+fn chance_is_named_where_no_answer_can_be_wrong() {
+    let folder = folder();
+    let words = |nodes| done(folder.path(), &["run", "smoke", "--nodes", nodes, "--trials", "1", "--threads", "1"]);
+    for (nodes, chance, map) in
+        [("1", "chance, the only node", "map: 1 node, "), ("2", "chance, both nodes", "map: 2 nodes, ")]
+    {
+        let words = words(nodes);
+        for part in [chance, map, "100.0 %", "chance is 100 %", "(1 thread)"] {
+            assert!(words.contains(part), "{part}: {words}");
+        }
+    }
+    assert!(!words("4").contains("chance is 100 %"));
+}
+
 /// What of a run's folder does not depend on wall times, machine or command.
 const REPEATABLE: [&str; 4] = ["trials.csv", "nodes.csv", "summary.json", "scenario.toml"];
 
@@ -551,14 +590,9 @@ fn shards_made_in_different_folders_merge() {
     assert_eq!(merged["summary"]["rows"][0]["trials"], 3);
 }
 
+/// Interrupts a run that writes to `runs` once some of its trials ended; what it says then.
 #[cfg(unix)]
-#[test]
-fn an_interrupted_run_says_how_to_go_on_and_ends_with_the_same_bytes() {
-    let folder = folder();
-    let path = folder.path();
-    let arguments = ["run", "smoke", "--nodes", "4", "--trials", "80", "--format", "json"];
-    let whole = json(&done(path, &[&arguments[..], &["--out", "whole"]].concat()));
-
+fn interrupted(path: &Path, arguments: &[&str]) -> String {
     let mut command = Command::new(env!("CARGO_BIN_EXE_edgeloc"));
     command.current_dir(path).args(arguments).stdout(std::process::Stdio::null()).stderr(std::process::Stdio::piped());
     let child = command.spawn().expect("the binary starts");
@@ -570,9 +604,32 @@ fn an_interrupted_run_says_how_to_go_on_and_ends_with_the_same_bytes() {
     }
     let id = child.id().to_string();
     assert!(Command::new("kill").args(["-INT", &id]).status().is_ok_and(|status| status.success()));
-    let interrupted = child.wait_with_output().expect("it ends");
-    let words = String::from_utf8_lossy(&interrupted.stderr);
-    assert_eq!(interrupted.status.code(), Some(1), "{words}");
+    let output = child.wait_with_output().expect("it ends");
+    let words = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{words}");
+    words
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_study_goes_on_as_a_study() {
+    let folder = folder();
+    let path = folder.path();
+    std::fs::write(path.join("study.toml"), STUDY).expect("written");
+    let words = interrupted(path, &["figures", "study.toml", "--trials", "80"]);
+    assert!(words.contains("edgeloc figures --resume runs/20"), "{words}");
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_says_how_to_go_on_and_ends_with_the_same_bytes() {
+    let folder = folder();
+    let path = folder.path();
+    let arguments = ["run", "smoke", "--nodes", "4", "--trials", "80", "--format", "json"];
+    let whole = json(&done(path, &[&arguments[..], &["--out", "whole"]].concat()));
+
+    let words = interrupted(path, &arguments);
+    let journal = path.join("runs/latest/journal.ndjson");
     assert!(words.contains("edgeloc run --resume runs/20") && words.contains("of 160 trials are kept"), "{words}");
 
     for verb in [&["report", "runs/latest"][..], &["replay", "runs/latest", "--trial", "0"], &["merge", "runs/latest"]]

@@ -138,10 +138,12 @@ fn an_edge_hidden_by_hand_is_saved_and_hidden_from_the_robot() {
     let (from, to) = (browser.evaluate(&corner("300", "100")), browser.evaluate(&corner("1000", "700")));
     browser.drag(pair(&from), pair(&to));
     browser.wait_until(&format!("{visible_count} < {one_hidden} - 3"));
+    browser.wait_until("get('hint').textContent.endsWith('edges hidden')");
     for (key, modifiers) in [("z", 2), ("z", 2 + 8), ("z", 2)] {
         let is_undo = modifiers == 2;
         browser.press(key, modifiers);
         browser.wait_until(&format!("({visible_count} === {one_hidden}) === {is_undo}"));
+        browser.wait_until(&format!("get('hint').textContent === '{}'", if is_undo { "Undone" } else { "Done again" }));
     }
 
     // Leaving without saving is asked about; the server keeps the edit all the same.

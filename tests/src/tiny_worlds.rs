@@ -28,6 +28,19 @@ pub fn bare_room() -> WireframeWorld {
     world
 }
 
+/// A room with a doorway, 1 m wide and open to an endless plain: walls alone.
+#[must_use]
+pub fn open_room() -> WireframeWorld {
+    let [length, depth, height] = ROOM_SIZE_M;
+    let mut world = WireframeWorld { name: "open-room".into(), origin: "by hand".into(), ..WireframeWorld::default() };
+    add_box(&mut world, [-0.1, -0.1, 0.0], [length + 0.1, 0.0, height]);
+    add_box(&mut world, [-0.1, depth, 0.0], [length + 0.1, depth + 0.1, height]);
+    add_box(&mut world, [-0.1, 0.0, 0.0], [0.0, depth, height]);
+    add_box(&mut world, [length, 0.0, 0.0], [length + 0.1, 2.5, height]);
+    add_box(&mut world, [length, 3.5, 0.0], [length + 0.1, depth, height]);
+    world
+}
+
 /// The room with a shelf, a table, a crate and a column, no two alike.
 #[must_use]
 pub fn furnished_room() -> WireframeWorld {

@@ -66,6 +66,17 @@ fn a_closed_room_is_explored_and_called_one() {
 }
 
 #[test]
+fn a_door_to_the_outside_counts_as_closed() {
+    let Explored { space, explorations } = explored(&tiny_worlds::open_room(), &RangeSensorOptions::default(), 5);
+    assert!(!space.exits().is_empty());
+    for exploration in &explorations {
+        assert!(!matches!(exploration.ending, Ending::StepLimit), "{:?}", exploration.ending);
+        assert!(exploration.coverage(&space) > 0.99 && exploration.collision_count == 0);
+        assert!(exploration.path.iter().all(|place| place.x < tiny_worlds::ROOM_SIZE_M[0] + 0.5));
+    }
+}
+
+#[test]
 fn the_same_start_and_seed_give_the_same_path_and_another_seed_another() {
     let world = tiny_worlds::furnished_room();
     let first = explored(&world, &RangeSensorOptions::default(), 3);

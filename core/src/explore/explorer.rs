@@ -93,6 +93,7 @@ pub struct Explorer<'m> {
     near: NearField,
     mode: Mode,
     step_count: u32,
+    covered_cells: u32,
     /// Most floor seen in one scan \[m2\].
     widest_look_m2: f32,
 }
@@ -120,6 +121,7 @@ impl<'m> Explorer<'m> {
             near: NearField::new(),
             mode: Mode::FollowWall { barren_m: 0.0 },
             step_count: 0,
+            covered_cells: 0,
             widest_look_m2: 0.0,
         })
     }
@@ -133,6 +135,7 @@ impl<'m> Explorer<'m> {
         self.near.update(heading_rad, scan);
         self.widest_look_m2 = math::max(self.widest_look_m2, closed_room::seen_m2(scan));
         let new_cells = self.grid.record(odometry.position, heading_rad, scan, self.config.cover_m);
+        self.covered_cells += new_cells;
         if self.step_count == self.config.max_steps {
             return self.finish(Ending::StepLimit);
         }
@@ -141,6 +144,12 @@ impl<'m> Explorer<'m> {
             return Action::Move(motion);
         }
         self.go_on(odometry.position, heading_rad)
+    }
+
+    /// Floor covered so far: seen from within [`ExploreConfig::cover_m`] \[m2\].
+    #[must_use]
+    pub fn covered_m2(&self) -> f32 {
+        self.grid.area_m2(self.covered_cells as usize)
     }
 
     fn finish(&mut self, ending: Ending) -> Action {

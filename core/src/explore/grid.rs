@@ -79,6 +79,10 @@ impl Extent {
         at.x >= self.low.x && at.x <= self.high.x && at.y >= self.low.y && at.y <= self.high.y
     }
 
+    fn places(self) -> impl Iterator<Item = At> {
+        (self.low.y..=self.high.y).flat_map(move |y| (self.low.x..=self.high.x).map(move |x| At { x, y }))
+    }
+
     fn with(self, at: At) -> Self {
         Self {
             low: At { x: self.low.x.min(at.x), y: self.low.y.min(at.y) },
@@ -106,13 +110,22 @@ pub(super) struct Grid<'m> {
     pub(super) seen: Extent,
     /// Where cells have become occupied or free since the clearances were worked out.
     changed: Extent,
+    /// Where cells may have a cost.
+    costed: Extent,
 }
 
 impl<'m> Grid<'m> {
     /// A grid on `cells`, `side` times `side` of them; whatever they hold is forgotten.
     pub(super) fn new(cells: &'m mut [Cell], side: u16, cell_m: f32) -> Self {
         cells.fill(Cell::EMPTY);
-        Self { cells, mask: i32::from(side) - 1, cell_m, seen: Extent::EMPTY, changed: Extent::EMPTY }
+        Self {
+            cells,
+            mask: i32::from(side) - 1,
+            cell_m,
+            seen: Extent::EMPTY,
+            changed: Extent::EMPTY,
+            costed: Extent::EMPTY,
+        }
     }
 
     /// The cell that holds a point \[m\].
@@ -146,8 +159,22 @@ impl<'m> Grid<'m> {
 
     /// Every place among what has been seen.
     pub(super) fn places(&self) -> impl Iterator<Item = At> + use<> {
-        let seen = self.seen;
-        (seen.low.y..=seen.high.y).flat_map(move |y| (seen.low.x..=seen.high.x).map(move |x| At { x, y }))
+        self.seen.places()
+    }
+
+    /// Gives a cell its cost in a search.
+    pub(super) fn set_cost(&mut self, at: At, cost: u16) {
+        self.costed = self.costed.with(at);
+        let number = self.number(at);
+        self.numbered(number).cost = cost;
+    }
+
+    /// Takes back all costs. A search seldom comes far in what has been seen, so only where it came is looked at.
+    pub(super) fn forget_costs(&mut self) {
+        for at in core::mem::replace(&mut self.costed, Extent::EMPTY).places() {
+            let number = self.number(at);
+            self.numbered(number).cost = u16::MAX;
+        }
     }
 
     pub(super) fn area_m2(&self, cell_count: usize) -> f32 {
@@ -205,14 +232,19 @@ impl<'m> Grid<'m> {
         }
     }
 
+    /// Whether the grid reaches as far as a place.
+    pub(super) fn has_room_for(&self, at: At) -> bool {
+        let seen = self.seen.with(at);
+        seen.high.x - seen.low.x <= self.mask && seen.high.y - seen.low.y <= self.mask
+    }
+
     /// The cell at a place, which from now on counts as seen; none when the grid does not reach so far.
     fn reached(&mut self, at: At) -> Option<&mut Cell> {
         if !self.seen.contains(at) {
-            let seen = self.seen.with(at);
-            if seen.high.x - seen.low.x > self.mask || seen.high.y - seen.low.y > self.mask {
+            if !self.has_room_for(at) {
                 return None;
             }
-            self.seen = seen;
+            self.seen = self.seen.with(at);
         }
         let number = self.number(at);
         Some(self.numbered(number))
@@ -227,6 +259,7 @@ impl<'m> Grid<'m> {
         let around = region.grown(MAX_CLEARANCE, &self.seen);
         self.changed = Extent::EMPTY;
         // Distances along rows go where the next search will write its costs.
+        self.costed = self.costed.with(around.low).with(around.high);
         for y in around.low.y..=around.high.y {
             let mut distance = MAX_CLEARANCE;
             for x in around.low.x..=around.high.x {

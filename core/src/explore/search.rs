@@ -47,11 +47,15 @@ impl Clearances {
 }
 
 impl Grid<'_> {
-    /// Whether a free place is worth going to: not seen from near, or beside what has not been seen at all.
+    /// Whether a free place is worth going to: not seen from near, or beside what has not been seen at all. What lies
+    /// beyond the grid is never seen, so being beside it is no reason.
     pub(super) fn is_worth_going(&self, at: At) -> bool {
         let cell = self.cell(at);
         let beside = [(1, 0), (-1, 0), (0, 1), (0, -1)];
-        let is_unknown = |(dx, dy): (i32, i32)| self.cell(At { x: at.x + dx, y: at.y + dy }).is_unknown();
+        let is_unknown = |(dx, dy): (i32, i32)| {
+            let at = At { x: at.x + dx, y: at.y + dy };
+            self.cell(at).is_unknown() && self.has_room_for(at)
+        };
         cell.is_free() && (!cell.is_covered() || beside.into_iter().any(is_unknown))
     }
 
@@ -62,7 +66,7 @@ impl Grid<'_> {
         self.forget_costs();
         let mut lists = [NONE; RING];
         let start = self.number(from);
-        self.numbered(start).cost = 0;
+        self.set_cost(from, 0);
         self.numbered(start).next = NONE;
         lists[0] = start;
         let (mut cost, mut empty_in_row) = (0_usize, 0);
@@ -84,13 +88,6 @@ impl Grid<'_> {
         None
     }
 
-    fn forget_costs(&mut self) {
-        for at in self.places() {
-            let number = self.number(at);
-            self.numbered(number).cost = u16::MAX;
-        }
-    }
-
     /// Puts the neighbours of a cell that were not found yet into the lists of their costs.
     fn spread(&mut self, at: At, clearances: &Clearances, lists: &mut [u32; RING]) {
         let here = self.cell(at);
@@ -109,9 +106,8 @@ impl Grid<'_> {
             }
             let number = self.number(beside);
             let list = &mut lists[usize::from(cost) % RING];
-            let found = self.numbered(number);
-            found.cost = cost;
-            found.next = core::mem::replace(list, number);
+            self.set_cost(beside, cost);
+            self.numbered(number).next = core::mem::replace(list, number);
         }
     }
 

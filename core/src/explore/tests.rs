@@ -130,6 +130,14 @@ fn a_building_fits_a_grid_of_its_size_from_any_corner() {
 }
 
 #[test]
+fn a_room_larger_than_the_grid_has_an_end() {
+    // 64 cells of 5 cm are 3.2 m, less than the 4 m of the room.
+    let small = ExploreConfig { side_cells: 64, max_steps: 2000, ..config() };
+    let (_, ending) = explored(ROOM, Point2::new(1.0, 0.8), &small);
+    assert!(!matches!(ending, Ending::StepLimit), "{ending:?}");
+}
+
+#[test]
 fn the_robot_gives_up_after_as_many_motions_as_it_may_make() {
     let short = ExploreConfig { max_steps: 7, ..config() };
     let (path, ending) = explored(ROOM, Point2::new(1.0, 0.8), &short);

@@ -103,6 +103,13 @@ impl Calibrate {
         let before = bench_prior(&StereoParameters::ideal(rig), self.prior_times).into_diagnostic()?;
         let mut after = before.clone();
         let update = after.update(&pairs, self.noise_px).into_diagnostic()?;
+        if update.used_pairs < PARAMETERS.len() {
+            console::remark(&format!(
+                "note: {} can't tell {} parameters: most of what follows is the prior",
+                console::count(update.used_pairs as u64, "corner pair"),
+                PARAMETERS.len()
+            ));
+        }
         Found::new(&before, &after, &[update], None)
     }
 }
@@ -168,8 +175,10 @@ impl Found {
         }
         console::print(&table.to_string())?;
         console::print(&format!(
-            "{} corner pairs used, {} left out as wrong matches; chi-squared {:.1}",
-            self.used_pairs, self.rejected_pairs, self.chi_squared
+            "{} used, {} left out as wrong matches; chi-squared {:.1}",
+            console::count(self.used_pairs as u64, "corner pair"),
+            self.rejected_pairs,
+            self.chi_squared
         ))?;
         console::print(&format!("strongest correlations: {}", self.strongest_correlations(5).join(", ")))
     }

@@ -40,6 +40,14 @@ pub(super) fn remark(text: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{text}");
 }
 
+/// A number of things: `1 node`, `2 nodes`.
+pub(super) fn count(number: impl Into<u64>, what: &str) -> String {
+    match number.into() {
+        1 => format!("1 {what}"),
+        number => format!("{number} {what}s"),
+    }
+}
+
 /// An empty table in the program's style.
 pub(super) fn table(header: &[&str]) -> Table {
     let mut table = Table::new();

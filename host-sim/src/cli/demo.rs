@@ -29,14 +29,16 @@ impl Demo {
         let Some(scenario) = self.changes.load("demo")? else { return Ok(()) };
         if self.format == Format::Text {
             console::print(&format!(
-                "A robot wakes up somewhere in an office that it has learned before: {} nodes of {} views each.\n\
+                "A robot wakes up somewhere in an office that it has learned before: {} of {} each.\n\
                  It looks around and says where it is by the straight edges it sees; {} times anywhere in free space, on the\n\
                  same poses and noise with the paper's localiser, which names a node, and with ours, which answers with a\n\
                  pose or says that it can't tell. Right is one of the two nearest nodes.\n",
-                scenario.learning.nodes, scenario.learning.views, scenario.trials,
+                console::count(scenario.learning.nodes, "node"),
+                console::count(scenario.learning.views, "view"),
+                scenario.trials,
             ))?;
         }
-        let (folder, results) = trials::run(scenario, &self.how)?;
+        let (folder, results) = trials::run(scenario, &self.how, None, "run")?;
         if self.format == Format::Json {
             return console::print_json(&RunPrinted { folder: folder.path(), summary: &results.summary });
         }

@@ -7,7 +7,7 @@ use super::{progress, worlds};
 use clap::Args;
 use edgeloc::explore::Ending;
 use edgeloc::geometry::Point2;
-use edgeloc_sim::learning::{self, COVER_REACH_M, Exploration, ExploringRobot};
+use edgeloc_sim::learning::{self, COVER_REACH_M, Exploration, ExplorationProgress, ExploringRobot};
 use edgeloc_sim::report::{FloorPlan, FreeCells, exploration_plan, to_svg_file};
 use edgeloc_sim::world::{FreeSpace, FreeSpaceOptions, RangeSensorOptions, WireframeWorld};
 use miette::{IntoDiagnostic, Result, miette};
@@ -16,9 +16,9 @@ use std::path::PathBuf;
 
 /// Let the robot explore a world by wall following from a start it does not know, and drop the nodes along its path.
 ///
-/// The robot has a range sensor of 360 rays, 8 m and 1 cm of noise, as high as itself; its odometry is exact. `run`,
-/// `learn` and `locate` use such nodes with --set learning.placement=explore; for the same world, seed and number of
-/// nodes they are the ones shown here without --start.
+/// The robot has a range sensor of 360 rays, 8 m and 1 cm of noise, as high as itself; its odometry is exact. Doors to the
+/// outside count as closed. `run`, `learn` and `locate` use such nodes with --set learning.placement=explore; for the same
+/// world, seed and number of nodes they are the ones shown here without --start.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  edgeloc explore\n  \
                         edgeloc explore --world small_house.edgeworld --nodes 47\n  \
@@ -60,12 +60,16 @@ impl Explore {
         let space = self.free_space(&world)?;
         let robot = ExploringRobot::new(&world, &space, &RangeSensorOptions::default());
         let start = self.start.unwrap_or_else(|| learning::random_start(&space, scenario.seed));
-        let tell = |scans| wheel.say(format!("exploring: {scans} scans"));
+        let tell = |so_far: &ExplorationProgress| {
+            let ExplorationProgress { scans, length_m, covered_m2 } = so_far;
+            wheel.say(format!("exploring: {scans} scans, {length_m:.0} m of path, {covered_m2:.0} m2 covered"));
+        };
         let exploration = learning::explore(&space, &robot, start, scenario.seed, tell).into_diagnostic()?;
         let nodes = exploration.drop_nodes(&space, usize::from(scenario.learning.nodes)).into_diagnostic()?;
         drop(wheel);
         let plan = FloorPlan::new(Some(&world), Some(&worlds::free_cells(&space)), &nodes);
-        let drawing = exploration_plan(&plan, &exploration, &covered(&space, &exploration));
+        let [covered, missed] = floor(&space, &exploration);
+        let drawing = exploration_plan(&plan, &exploration, &covered, &missed);
         console::write_file(&path, to_svg_file(drawing).as_bytes())?;
         Report::new(&space, &exploration, &nodes, path).print(&space, self.format)
     }
@@ -79,12 +83,15 @@ impl Explore {
     }
 }
 
-/// The covered cells as the plan draws them.
-fn covered(space: &FreeSpace, exploration: &Exploration) -> FreeCells {
+/// The cells that were covered and those that were not, as the plan draws them.
+fn floor(space: &FreeSpace, exploration: &Exploration) -> [FreeCells; 2] {
     let is_covered = exploration.covered_cells(space);
     let free = worlds::free_cells(space);
-    let centers = free.centers.iter().zip(is_covered).filter_map(|(&center, is_covered)| is_covered.then_some(center));
-    FreeCells { centers: centers.collect(), ..free }
+    [true, false].map(|wanted| {
+        let cells = free.centers.iter().zip(&is_covered);
+        let centers = cells.filter(|&(_, &is_covered)| is_covered == wanted).map(|(&center, _)| center).collect();
+        FreeCells { centers, ..free.clone() }
+    })
 }
 
 /// What came of it, as `--format json` prints it.
@@ -149,7 +156,8 @@ impl Report {
         let elsewhere = match space.other_region_count() {
             0 => String::new(),
             count => {
-                format!("; {count} other indoor regions of {:.1} m2 can't be reached from it", space.other_regions_m2())
+                let regions = console::count(count as u64, "other indoor region");
+                format!("; {regions} of {:.1} m2 can't be reached from it", space.other_regions_m2())
             }
         };
         let lines = [
@@ -160,7 +168,7 @@ impl Report {
                 "coverage",
                 format!("{:.1} % of it within {COVER_REACH_M} m of the path, round walls", 100.0 * self.coverage),
             ),
-            ("path", format!("{:.1} m, {} scans", self.length_m, self.scans)),
+            ("path", format!("{:.1} m, {}", self.length_m, console::count(self.scans as u64, "scan"))),
             (
                 "collisions",
                 format!("{}; least clearance of its center {:.2} m", self.collisions, self.least_clearance_m),

@@ -7,8 +7,8 @@ use super::trials::{self, RunArguments};
 use clap::Args;
 use comfy_table::{CellAlignment, Table};
 use edgeloc_sim::report::{
-    FigureLine, RunFolder, RunResults, TestKind, figure_chart, figure_lines, figures_csv, figures_page, power_sentence,
-    to_svg_file,
+    FigureLine, RunFolder, RunResults, TestKind, figure_chart, figure_lines, figures_csv, figures_page,
+    lines_of_figure, power_sentence, to_svg_file,
 };
 use edgeloc_sim::scenario::Scenario;
 use edgeloc_sim::sweep::{compare_with_default, figures_of, with_anywhere};
@@ -96,11 +96,11 @@ impl Figures {
     pub(super) fn execute(self) -> Result<()> {
         let (folder, results) = match (&self.from, &self.resume) {
             (Some(run), _) => merged(run)?,
-            (None, Some(run)) => trials::resume(run, self.how.threads)?,
+            (None, Some(run)) => trials::resume(run, self.how.threads, "figures")?,
             (None, None) => {
                 let Some(scenario) = self.scenario()? else { return Ok(()) };
                 self.announce(&scenario);
-                trials::run(scenario, &self.how)?
+                trials::run(scenario, &self.how, None, "figures")?
             }
         };
         let lines = figure_lines(&results).into_diagnostic()?;
@@ -110,8 +110,9 @@ impl Figures {
         }
         console::print(&table(&lines).to_string())?;
         let (seconds, threads) = (results.timings.total_s(), results.manifest.host.used_threads);
+        let threads = console::count(threads as u64, "thread");
         console::print(&format!(
-            "ms: wall time of the localiser for a localisation; time: {seconds:.1} s ({threads} threads)"
+            "ms: wall time of the localiser for a localisation; time: {seconds:.1} s ({threads})"
         ))?;
         console::print(&format!("report: {}", page.display()))
     }
@@ -149,8 +150,9 @@ fn merged(run: &Path) -> Result<(RunFolder, RunResults)> {
 fn write(folder: &RunFolder, results: &RunResults, lines: &[FigureLine]) -> Result<PathBuf> {
     folder.write("figures.csv", &figures_csv(lines).into_diagnostic()?)?;
     for figure in figures_of(&results.scenario.rows) {
-        let of_figure = lines.iter().filter(|line| line.figure == figure.name).collect::<Vec<_>>();
-        folder.write(&file_name(&figure.name), to_svg_file(figure_chart(&of_figure)).as_bytes())?;
+        let of_figure = lines_of_figure(lines, &figure.name);
+        let chart = figure_chart(&of_figure.iter().collect::<Vec<_>>());
+        folder.write(&file_name(&figure.name), to_svg_file(chart).as_bytes())?;
     }
     Ok(folder.write("figures.html", figures_page(results, lines).as_bytes())?)
 }

@@ -12,7 +12,8 @@ use edgeloc_sim::report::{
 };
 use edgeloc_sim::scenario::{Building, Row, Scenario, Setting};
 use edgeloc_sim::sweep::{
-    Axis, Sample, Schedule, Stage, Standing, choose, draw_points, preset_toml, samples, search, stage_scenario,
+    Axis, LEAST_TRIALS, Sample, Schedule, Stage, Standing, choose, draw_points, preset_toml, samples, search,
+    stage_scenario,
 };
 use edgeloc_sim::world::WireframeWorld;
 use miette::{IntoDiagnostic, Result, miette};
@@ -36,7 +37,7 @@ difference_high, p, p_holm, is_on_front, is_chosen";
 /// together), so that looking often proves nothing that is not there. The finalists run again on fresh poses, maps and noise:
 /// every rate reported is of those trials.
 ///
-/// The folder, runs/<date>-optimise-<name>, gets settings.csv, two SVGs of the front, optimise.html and the preset, which
+/// The folder, runs/<date>-optimise-<name> and from its first stage on runs/latest, gets settings.csv, two SVGs of the front, optimise.html and the preset, which
 /// `edgeloc run` takes. The same seed searches the same way on every machine: no clock decides anything.
 #[derive(Debug, Args)]
 #[command(after_help = format!(
@@ -132,14 +133,30 @@ impl Optimise {
         let points = draw_points(&axes, usize::from(self.settings), base.seed);
         let (settings, finalists) = (points.len(), usize::from(self.finalists));
         let schedule = Schedule { settings, finalists, trials_total: self.trials_total };
-        let folder = self.folder()?;
+        let least = schedule.least_trials_total();
+        if self.trials_total < least {
+            let settings = console::count(settings as u64, "setting");
+            return Err(miette!(
+                help = format!(
+                    "give at least {least}, so that each has {LEAST_TRIALS} trials in every stage, or search fewer --settings"
+                ),
+                "--trials-total {} is too small for {settings} and {}",
+                self.trials_total,
+                console::count(finalists as u64, "finalist")
+            ));
+        }
         let world = worlds::open(&base)?;
+        let folder = self.folder()?;
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(self.threads.map_or(0, usize::from))
             .build()
             .into_diagnostic()?;
         let stages = Stages { base: &base, row: &row, points: &points, world: &world, folder: &folder, pool: &pool };
-        let standings = search(&schedule, |stage, settings, trials| stages.evaluate(stage, settings, trials))?;
+        let standings = search(&schedule, |stage, settings, trials| stages.evaluate(stage, settings, trials))
+            .inspect_err(|_| {
+                // What was refused before a stage was over leaves nothing to go on with: an empty folder goes.
+                let _ = std::fs::remove_dir(&folder);
+            })?;
 
         let within = self.within_points / 100.0;
         let lines = search_lines(&base, &axes, &points, &standings, within)?;
@@ -273,6 +290,9 @@ impl Stages<'_> {
         let samples = samples(&scenario, &outcome);
         let kept = StageFile { manifest: manifest.finished(), scenario: text, samples };
         console::write_file(&self.folder.join(&file), &serde_json::to_vec(&kept).into_diagnostic()?)?;
+        if let Err(error) = RunFolder::link_latest_to(self.folder) {
+            console::remark(&format!("the search goes on, but {error}"));
+        }
         Ok(kept.samples)
     }
 }

@@ -93,13 +93,16 @@ impl Power {
         line("as two rates, each on trials of its own", None, needed.trials_unpaired);
         console::print(&table.to_string())?;
         let Some(Detectable { trials, paired_loss, unpaired_loss }) = needed.detectable else { return Ok(()) };
-        let loss =
-            |loss: Option<f64>| loss.map_or_else(|| "nothing".to_owned(), |loss| format!("{:.1} points", 100.0 * loss));
+        let (trials, first) = (console::count(trials, "trial"), percent(first));
+        if paired_loss.or(unpaired_loss).is_none() {
+            return console::print(&format!("{trials} of each setting can't detect even a fall from {first} to 0"));
+        }
+        let loss = |loss: Option<f64>| {
+            loss.map_or_else(|| "no loss".to_owned(), |loss| format!("a loss of {:.1} points", 100.0 * loss))
+        };
+        let (paired, unpaired) = (loss(paired_loss), loss(unpaired_loss));
         console::print(&format!(
-            "{trials} trials of each setting detect a loss from {} of {} one by one, of {} as two rates",
-            percent(first),
-            loss(paired_loss),
-            loss(unpaired_loss)
+            "{trials} of each setting detect, from {first}, {paired} one by one and {unpaired} as two rates"
         ))
     }
 

@@ -69,10 +69,10 @@ pub(super) struct RunPrinted<'r> {
 impl Run {
     pub(super) fn execute(self) -> Result<()> {
         let (folder, results) = match &self.resume {
-            Some(folder) => trials::resume(folder, self.how.threads)?,
+            Some(folder) => trials::resume(folder, self.how.threads, "run")?,
             None => {
                 let Some(scenario) = self.scenario.load()? else { return Ok(()) };
-                trials::run_shard(scenario, &self.how, self.shard)?
+                trials::run(scenario, &self.how, self.shard, "run")?
             }
         };
         if self.format == Format::Json {

@@ -36,7 +36,12 @@ pub(super) fn headline(results: &RunResults) -> Table {
     for (index, row) in summary.rows.iter().enumerate() {
         if summary.rows[..index].iter().all(|other| other.nodes != row.nodes) {
             let chance = format!("{:.1} %", 100.0 * row.chance_rate);
-            table.add_row([format!("chance, 2 of {} nodes", row.nodes), chance, String::new()]);
+            let of_nodes = match row.nodes {
+                1 => "the only node".to_owned(),
+                2 => "both nodes".to_owned(),
+                nodes => format!("2 of {nodes} nodes"),
+            };
+            table.add_row([format!("chance, {of_nodes}"), chance, String::new()]);
         }
     }
     for column in 2..=6 {
@@ -110,22 +115,24 @@ pub(super) fn remarks(results: &RunResults) -> String {
     let mut maps = String::new();
     for (index, row) in summary.rows.iter().enumerate() {
         if summary.rows[..index].iter().all(|other| other.map != row.map) && maps.lines().count() < LISTED_MAPS {
-            let (nodes, map) = (row.nodes, &row.map);
+            let (nodes, map) = (console::count(row.nodes as u64, "node"), &row.map);
             maps.push_str(&format!(
-                "map: {nodes} nodes, one for each {:.1} m2 of free space; {:.0} segments a node, {:.0} kB\n",
+                "map: {nodes}, one for each {:.1} m2 of free space; {:.0} segments a node, {:.0} kB\n",
                 map.free_m2_per_node,
                 map.mean_segments_per_node,
                 map.mean_bytes / 1e3,
             ));
         }
     }
+    let threads = console::count(results.manifest.host.used_threads as u64, "thread");
+    let is_trivial = summary.rows.iter().any(|row| row.nodes <= 2);
+    let trivial = if is_trivial { "\nwith no more than two nodes every answer is right: chance is 100 %" } else { "" };
     format!(
         "ms a look: mean wall time of the localiser alone, on one thread\n\
-         {maps}time: {:.1} s; {:.1} s to prepare, {:.1} s for trials, of which the localiser took {localizer_s:.1} s ({} threads)",
+         {maps}time: {:.1} s; {:.1} s to prepare, {:.1} s for trials, of which the localiser took {localizer_s:.1} s ({threads}){trivial}",
         timings.total_s(),
         timings.prepare_s,
         timings.trials_s,
-        results.manifest.host.used_threads,
     )
 }
 

@@ -54,16 +54,12 @@ fn prepare_rows(world: WireframeWorld, scenario: &Scenario) -> Result<Sites> {
     Ok(sites)
 }
 
-/// Runs a scenario in a new folder.
-pub(super) fn run(scenario: Scenario, arguments: &RunArguments) -> Result<(RunFolder, RunResults)> {
-    run_shard(scenario, arguments, None)
-}
-
-/// Runs a scenario, or a shard of it, in a new folder.
-pub(super) fn run_shard(
+/// Runs a scenario, or a shard of it, in a new folder; `verb` is the one that goes on with it.
+pub(super) fn run(
     scenario: Scenario,
     arguments: &RunArguments,
     shard: Option<Shard>,
+    verb: &'static str,
 ) -> Result<(RunFolder, RunResults)> {
     let folder = |name: &str| {
         let date = jiff::Zoned::now().strftime("%Y-%m-%d").to_string();
@@ -74,14 +70,14 @@ pub(super) fn run_shard(
         }
         Ok(folder)
     };
-    run_in(scenario, arguments.threads, shard, folder)
+    run_in(scenario, arguments.threads, (shard, verb), folder)
 }
 
 /// Runs a scenario, or a shard of it, in the folder that `make_folder` makes for its name once the world is ready.
 pub(super) fn run_in(
     scenario: Scenario,
     threads: Option<u16>,
-    shard: Option<Shard>,
+    (shard, verb): (Option<Shard>, &'static str),
     make_folder: impl FnOnce(&str) -> Result<RunFolder>,
 ) -> Result<(RunFolder, RunResults)> {
     let (started, start) = (jiff::Timestamp::now(), Instant::now());
@@ -95,11 +91,11 @@ pub(super) fn run_in(
 
     let folder = make_folder(&scenario.name)?;
     folder.begin(&manifest, &scenario)?;
-    Running { pool, sites, folder, manifest, scenario, trials, prepare_time: start.elapsed() }.finish()
+    Running { pool, sites, folder, manifest, scenario, trials, prepare_time: start.elapsed(), verb }.finish()
 }
 
-/// Goes on with a run that was interrupted.
-pub(super) fn resume(path: &Path, threads: Option<u16>) -> Result<(RunFolder, RunResults)> {
+/// Goes on with a run that was interrupted; `verb` is the one that does so.
+pub(super) fn resume(path: &Path, threads: Option<u16>, verb: &'static str) -> Result<(RunFolder, RunResults)> {
     let start = Instant::now();
     let (folder, manifest, scenario) = RunFolder::open_unfinished(&behind_link(path))?;
     check_same_program(
@@ -111,7 +107,7 @@ pub(super) fn resume(path: &Path, threads: Option<u16>) -> Result<(RunFolder, Ru
     let pool = thread_pool(threads)?;
     let sites = pool.install(|| prepare_rows(world, &scenario))?;
     let trials = trials.unwrap_or(0..sites.trials());
-    Running { pool, sites, folder, manifest, scenario, trials, prepare_time: start.elapsed() }.finish()
+    Running { pool, sites, folder, manifest, scenario, trials, prepare_time: start.elapsed(), verb }.finish()
 }
 
 /// A run under way.
@@ -123,6 +119,7 @@ struct Running {
     scenario: Scenario,
     trials: Range<u32>,
     prepare_time: Duration,
+    verb: &'static str,
 }
 
 impl Running {
@@ -157,7 +154,7 @@ impl Running {
         closed?;
         if !is_complete {
             return Err(miette!(
-                help = format!("go on with: edgeloc run --resume {folder}"),
+                help = format!("go on with: edgeloc {} --resume {folder}", self.verb),
                 "the run was interrupted"
             ));
         }

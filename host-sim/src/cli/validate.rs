@@ -246,9 +246,9 @@ impl Validate {
             return Ok(finished.read_results()?);
         }
         let run = if path.join("manifest.json").is_file() {
-            trials::resume(&path, self.how.threads)
+            trials::resume(&path, self.how.threads, "validate")
         } else {
-            trials::run_in(scenario, self.how.threads, None, |_| Ok(RunFolder::at(path.clone())?))
+            trials::run_in(scenario, self.how.threads, (None, "validate"), |_| Ok(RunFolder::at(path.clone())?))
         };
         if run.is_err() {
             let folder = name(folder.path());

@@ -2,7 +2,8 @@
 //!
 //! The robot starts in the middle of a free cell, with a heading drawn by seed; it knows neither. Its odometry is exact:
 //! correcting drift is another subject, and the nodes of the map are where the robot believes them to be anyhow. A
-//! motion that would bring a surface within the robot's radius stops there and is counted as a collision.
+//! motion that would bring a surface within the robot's radius stops there and is counted as a collision. Doors to the
+//! outside are closed ([`FreeSpace::exits`]): beyond them there is no end of floor to explore, and none of the building.
 
 use super::Exploration;
 use crate::random::Stream;
@@ -29,7 +30,7 @@ impl ExploringRobot {
     /// The robot that `space` was found for, in that world; its grid is large enough for the building.
     #[must_use]
     pub fn new(world: &WireframeWorld, space: &FreeSpace, sensor: &RangeSensorOptions) -> Self {
-        let sensor = RangeSensor::new(&world.surfaces, sensor);
+        let sensor = RangeSensor::with_closed(&world.surfaces, sensor, space.exits());
         let body = Outlines::new(&world.surfaces, space.options().slice_m);
         let reference = ExploreConfig::reference();
         let side_m = body.extent_m() + OUTSIDE_M;
@@ -37,6 +38,17 @@ impl ExploringRobot {
         let config = ExploreConfig { robot_radius_m: space.options().robot_radius_m, side_cells, ..reference };
         Self { config, sensor, body }
     }
+}
+
+/// How far exploring has come.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ExplorationProgress {
+    /// Scans taken.
+    pub scans: usize,
+    /// Length of the path \[m\].
+    pub length_m: f32,
+    /// Floor covered, as the robot counts it \[m2\].
+    pub covered_m2: f32,
 }
 
 /// Lets the robot explore from `start`; `seed` selects its heading and the noise of its sensor, `step` is told of each
@@ -49,7 +61,7 @@ pub fn explore(
     robot: &ExploringRobot,
     start: Point2,
     seed: u64,
-    mut step: impl FnMut(usize),
+    mut step: impl FnMut(&ExplorationProgress),
 ) -> Result<Exploration, ExplorationError> {
     let not_free = ExplorationError::NotFree { x_m: start.x, y_m: start.y };
     let origin = space.cell_centers().nth(space.number_at(start).ok_or(not_free)?).ok_or(not_free)?;
@@ -58,7 +70,7 @@ pub fn explore(
     let mut explorer = Explorer::new(&robot.config, &mut cells).map_err(ExplorationError::Explorer)?;
     let mut odometry = Odometry { position: Point2::default(), heading: heading(turn as f32) };
     let in_world = |position: Point2| Point2::new(origin.x + position.x, origin.y + position.y);
-    let mut path = vec![origin];
+    let (mut path, mut length_m) = (vec![origin], 0.0);
     let mut body = Body {
         outlines: &robot.body,
         radius_m: space.options().robot_radius_m,
@@ -76,8 +88,10 @@ pub fn explore(
                 return Ok(Exploration { path, ending, collision_count, least_clearance_m });
             }
         }
-        path.push(in_world(odometry.position));
-        step(path.len());
+        let position = in_world(odometry.position);
+        length_m += path.last().map_or(0.0, |last| last.distance(position));
+        path.push(position);
+        step(&ExplorationProgress { scans: path.len(), length_m, covered_m2: explorer.covered_m2() });
     }
 }
 

@@ -19,7 +19,7 @@ pub use budget::keep_most_telling;
 pub use calibrated_rig::CalibratedRig;
 pub use calibration_bench::{CalibrationBench, FAR_DISPARITY_PX, PRIOR, SimulatedCalibration, bench_prior};
 pub use exploration::{COVER_REACH_M, Exploration};
-pub use explore::{ExplorationError, ExploringRobot, explore};
+pub use explore::{ExplorationError, ExplorationProgress, ExploringRobot, explore};
 pub use join::join_collinear;
 pub use learn::{LearnedNode, learn, learn_nodes, write_map};
 pub use node_placement::{NodePlacement, NodePlacementError, random_start};

@@ -11,7 +11,11 @@ use svg::node::element::{Circle, Group, Path, Rectangle, SVG};
 /// Width in px of the area inside the axes, whatever the number of settings.
 const WIDTH_PX: f64 = 900.0;
 
-/// The chart of the lines of one figure, its settings side by side in their order.
+/// The two regimes stand this far apart, as a share of the slot of a setting.
+const APART: f64 = 0.15;
+
+/// The chart of the lines of one figure, its settings side by side in their order; a line joins neighbours that differ
+/// by a number alone.
 #[must_use]
 pub fn figure_chart(lines: &[&FigureLine]) -> SVG {
     let mut settings: Vec<&str> = Vec::new();
@@ -45,30 +49,32 @@ pub fn figure_chart(lines: &[&FigureLine]) -> SVG {
         };
         let y = rates.y(height(claim.success_rate.max(floor)));
         let label = format!("the paper: {}; {}", percent(claim.success_rate), claim.source);
-        chart.append(Group::new().add(tooltip(label)).add(line("guide", (at(0.06), y), (at(0.94), y))).add(text(
+        chart.append(Group::new().add(tooltip(label)).add(line("guide", (at(0.01), y), (at(0.99), y))).add(text(
             "end",
-            (at(0.94), y - 5.0),
+            (at(1.0) + 8.0, y - 5.0),
             format!("{:.2} %", 100.0 * claim.success_rate),
         )));
     }
+    // Side by side about the label where there are both, so that intervals do not cover each other.
+    let is_alone = |setting: &str| {
+        let mut starts = lines.iter().filter(|line| line.setting == setting).map(|line| line.start);
+        let first = starts.next();
+        starts.all(|start| Some(start) == first)
+    };
     for (series, start) in starts.into_iter().enumerate() {
-        // Side by side within the slot, so that intervals do not cover each other.
-        let shift = if series == 0 { 0.3 } else { 0.45 };
         let x_of = |setting: &str| {
+            let shift = if is_alone(setting) { 0.5 } else { 0.5 + APART * (series as f64 - 0.5) };
             let index = settings.iter().position(|known| *known == setting).unwrap_or(0);
             rates.x((index as f64 + shift) / settings.len() as f64)
         };
         let of_start = lines.iter().copied().filter(|line| line.start == start).collect::<Vec<_>>();
         let mut group = Group::new().set("class", format!("series{}", series % SERIES_COUNT));
         let mut trace = String::new();
-        for line in &of_start {
-            let Some(rate) = line.success_rate else { continue };
-            trace.push_str(&format!(
-                "{}{} {}",
-                if trace.is_empty() { "M" } else { "L" },
-                x_of(&line.setting),
-                rates.y(height(rate))
-            ));
+        for pair in of_start.windows(2).filter(|pair| is_next_on_scale(&pair[0].setting, &pair[1].setting)) {
+            for (command, line) in ["M", "L"].into_iter().zip(pair) {
+                let Some(rate) = line.success_rate else { continue };
+                trace.push_str(&format!("{command}{} {}", x_of(&line.setting), rates.y(height(rate))));
+            }
         }
         group.append(Path::new().set("class", "trace").set("d", trace));
         for line in of_start {
@@ -78,6 +84,17 @@ pub fn figure_chart(lines: &[&FigureLine]) -> SVG {
         chart.append(group);
     }
     chart.add(text("start", (times.left, times.y(0.0) + 22.0), "time of a localisation, all its looks together"))
+}
+
+/// Whether a setting has the same words as the one before it and a greater number: `45 degrees`, `60 degrees`.
+fn is_next_on_scale(before: &str, setting: &str) -> bool {
+    let words_and_number = |setting: &str| {
+        let start = setting.find(|c: char| c.is_ascii_digit())?;
+        let length = setting[start..].find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(setting.len() - start);
+        let (number, rest) = setting[start..].split_at(length);
+        Some((format!("{}|{rest}", &setting[..start]), number.parse::<f64>().ok()?))
+    };
+    matches!((words_and_number(before), words_and_number(setting)), (Some(a), Some(b)) if a.0 == b.0 && a.1 < b.1)
 }
 
 fn mark(of: &FigureLine, x: f64, axes: &Axes, height: impl Fn(f64) -> f64) -> Group {
@@ -135,6 +152,40 @@ mod tests {
         }
         assert!(!chart.contains("NaN"));
         assert!(!figure_chart(&[]).to_string().contains("NaN"));
+    }
+
+    #[test]
+    fn marks_stand_about_their_label_and_only_steps_of_a_scale_are_joined() {
+        let results = sample::run().results;
+        let line = figure_lines(&results).expect("legal rows").remove(0);
+        let of = |setting: &str, start| FigureLine { setting: setting.to_owned(), start, ..line.clone() };
+        let near = ["none", "psi_e 5 %", "psi_e 20 %", "psi_l 3 px"].map(|setting| of(setting, Start::Near));
+        let anywhere = near.clone().map(|line| FigureLine { start: Start::Anywhere, ..line });
+        let chart = |lines: &[&FigureLine]| figure_chart(lines).to_string();
+        let alone = chart(&near.iter().collect::<Vec<_>>());
+        // Slots of 225 px from 62 px on.
+        for middle in [174.5, 399.5, 624.5, 849.5] {
+            assert!(alone.contains(&format!("cx=\"{middle}\"")), "{middle}: {alone}");
+        }
+        assert_eq!(alone.matches("M399.5").count(), 1);
+        assert!(!alone.contains("M174.5") && !alone.contains("M624.5"), "{alone}");
+        // The first setting has both starts, the others are near alone.
+        let both = chart(&near.iter().chain(&anywhere[..1]).collect::<Vec<_>>());
+        let centers = both.split("cx=\"").skip(1).filter_map(|rest| rest.split('"').next()?.parse::<f64>().ok());
+        let from_label = centers.map(|x| (x - 62.0).rem_euclid(225.0) - 112.5).collect::<Vec<_>>();
+        let expected = [-16.875, 0.0, 0.0, 0.0, 16.875];
+        assert_eq!(from_label.len(), expected.len());
+        assert!(from_label.iter().zip(expected).all(|(a, b)| (a - b).abs() < 0.01), "{from_label:?}");
+    }
+
+    #[test]
+    fn a_scale_is_the_same_words_with_a_greater_number() {
+        for (before, setting) in [("45 degrees", "60 degrees"), ("B_th 0", "B_th 0.025"), ("30 x 64", "60 x 64")] {
+            assert!(is_next_on_scale(before, setting) && !is_next_on_scale(setting, before), "{before}, {setting}");
+        }
+        for (before, setting) in [("default", "10"), ("psi_e 5 %", "psi_l 6 px"), ("5 x 8", "30 x 64"), ("none", "x")] {
+            assert!(!is_next_on_scale(before, setting), "{before}, {setting}");
+        }
     }
 
     #[test]

@@ -137,6 +137,27 @@ pub fn figure_lines(results: &RunResults) -> Result<Vec<FigureLine>, IllegalValu
     Ok(lines.collect())
 }
 
+/// The lines of one figure. Where none of its settings is the default of a start that it has, the default comes first: a
+/// setting says little without.
+#[must_use]
+pub fn lines_of_figure(lines: &[FigureLine], figure: &str) -> Vec<FigureLine> {
+    let own = || lines.iter().filter(|line| line.figure == figure);
+    let is_default = |line: &&FigureLine| line.test == TestKind::Default;
+    let lacks_default = |start: &Start| {
+        own().any(|line| line.start == *start) && !own().filter(is_default).any(|line| line.start == *start)
+    };
+    let starts = [Start::Near, Start::Anywhere].into_iter().filter(lacks_default);
+    let added = starts.filter_map(|start| lines.iter().filter(is_default).find(|line| line.start == start));
+    let added = added.map(|line| FigureLine {
+        figure: figure.to_owned(),
+        setting: "default".to_owned(),
+        paper_success_rate: None,
+        paper_time_s: None,
+        ..line.clone()
+    });
+    added.chain(own().cloned()).collect()
+}
+
 fn fill_comparison(line: &mut FigureLine, comparison: &DefaultComparison) {
     let (difference, (low, high)) = match comparison.against {
         Against::IsDefault => {
@@ -189,5 +210,27 @@ mod tests {
         results.records.extend(opposites);
         let lines = figure_lines(&results).expect("legal rows");
         assert_eq!((lines[1].trials, lines[1].pairs, lines[1].discordance()), (60, Some(20), Some(1.0)));
+    }
+
+    #[test]
+    fn a_figure_without_the_default_gets_it() {
+        let mut lines = figure_lines(&sample::run().results).expect("legal rows");
+        let starts: Vec<Start> = lines.iter().map(|line| line.start).collect();
+        let of = |start| starts.iter().position(|&other| other == start).expect("a row of that start");
+        let (near, anywhere) = (of(Start::Near), of(Start::Anywhere));
+        for line in &mut lines {
+            (line.figure, line.test) = ("other".to_owned(), TestKind::Mcnemar);
+        }
+        (lines[near].figure, lines[near].test) = ("4(a)".to_owned(), TestKind::Default);
+        lines[anywhere].figure = "start".to_owned();
+        lines[anywhere].test = TestKind::Default;
+        let names = |figure: &str| {
+            let of_figure = lines_of_figure(&lines, figure);
+            of_figure.into_iter().map(|line| (line.setting, line.start)).collect::<Vec<_>>()
+        };
+        assert_eq!((names("4(a)").len(), names("start").len(), names("none").len()), (1, 1, 0));
+        let default = |start| ("default".to_owned(), start);
+        assert_eq!(names("other")[..2], [default(Start::Near), default(Start::Anywhere)]);
+        assert_eq!(names("other").len(), lines.len());
     }
 }

@@ -2,7 +2,7 @@
 
 use super::document::{document, inline};
 use super::drawing::percent;
-use super::figure_lines::{FigureLine, TestKind};
+use super::figure_lines::{FigureLine, TestKind, lines_of_figure};
 use super::{RunResults, figure_chart};
 use crate::monte_carlo::paired_difference_interval;
 use crate::scenario::Start;
@@ -23,7 +23,7 @@ pub fn figures_page(results: &RunResults, lines: &[FigureLine]) -> String {
     let body = html! {
         (what_came_out(lines))
         @for figure in figures_of(&results.scenario.rows) {
-            (one_figure(&figure.name, &lines.iter().filter(|line| line.figure == figure.name).collect::<Vec<_>>()))
+            (one_figure(&figure.name, &lines_of_figure(lines, &figure.name).iter().collect::<Vec<_>>()))
             @if figure.name == "4(b)" { (against_none(results)) }
         }
         (openings())
@@ -36,18 +36,29 @@ pub fn figures_page(results: &RunResults, lines: &[FigureLine]) -> String {
 /// disagree.
 #[must_use]
 pub fn power_sentence(rate: f64, trials: u64, discordance: f64, comparisons: usize) -> String {
-    let points =
-        |loss: Option<f64>| loss.map_or_else(|| "nothing".to_owned(), |loss| format!("{:.1} points", 100.0 * loss));
     let one = Demand::default();
     let all = one.shared_by(comparisons);
+    let paired = one.detectable_loss(rate, Some(discordance), trials);
+    let trials_words = if trials == 1 { "1 paired trial".to_owned() } else { format!("{trials} paired trials") };
+    let Some(paired) = paired else {
+        let rate = percent(rate);
+        return format!("{trials_words} can't detect even a fall from {rate} to 0 (95 % confidence, 80 % power)");
+    };
+    let loss =
+        |loss: Option<f64>| loss.map_or("no loss".to_owned(), |loss| format!("one of {:.1} points", 100.0 * loss));
+    let shared = if comparisons > 1 {
+        let loss = loss(all.detectable_loss(rate, Some(discordance), trials));
+        format!(", {loss} when {comparisons} comparisons share the 5 %")
+    } else {
+        String::new()
+    };
     format!(
-        "{trials} paired trials detect a loss of {} from {} where two settings disagree in {} of the trials (95 % confidence, \
-         80 % power), of {} when {comparisons} comparisons share the 5 %; unpaired they would detect {}",
-        points(one.detectable_loss(rate, Some(discordance), trials)),
+        "{trials_words} detect a loss of {:.1} points from {} where two settings disagree in {} of the trials (95 % \
+         confidence, 80 % power){shared}; unpaired they would detect {}",
+        100.0 * paired,
         percent(rate),
         percent(discordance),
-        points(all.detectable_loss(rate, Some(discordance), trials)),
-        points(one.detectable_unpaired_loss(rate, trials)),
+        loss(one.detectable_unpaired_loss(rate, trials)),
     )
 }
 
@@ -180,7 +191,7 @@ fn facts(results: &RunResults) -> Markup {
             dt { "program" } dd { "edgeloc " (manifest.program_version) @if let Some(commit) = &manifest.git_commit { ", commit " code { (commit) } } }
             dt { "command" } dd { code { (manifest.command.join(" ")) } }
             dt { "wall time" } dd { (format!("{:.0} s", timings.total_s())) }
-            dt { "machine" } dd { (manifest.host.processor.as_deref().unwrap_or("unnamed processor")) ", " (manifest.host.used_threads) " threads" }
+            dt { "machine" } dd { (manifest.host.processor.as_deref().unwrap_or("unnamed processor")) ", " (manifest.host.used_threads) @if manifest.host.used_threads == 1 { " thread" } @else { " threads" } }
             dt { "noise draws" } dd { "the map is learned anew every " (scenario.trials_per_map) " trials" }
         }
         details { summary { "scenario.toml" } pre { (scenario.to_toml()) } }
@@ -228,5 +239,8 @@ mod tests {
         let sentence = power_sentence(0.93, 900, 0.08, 19);
         assert!(sentence.starts_with("900 paired trials detect a loss of 2.6 points from 93.0 %"), "{sentence}");
         assert!(sentence.contains("19 comparisons"), "{sentence}");
+        assert!(!power_sentence(0.93, 900, 0.08, 1).contains("comparisons"));
+        let few = power_sentence(0.93, 2, 0.08, 19);
+        assert!(few.starts_with("2 paired trials can't detect even a fall from 93.0 % to 0"), "{few}");
     }
 }

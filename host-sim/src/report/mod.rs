@@ -42,7 +42,7 @@ pub use drawing::to_svg_file;
 pub use explanation::{AnsweredPose, LookExplanation, NodeStanding, PossiblePlace, answer_words, scene_drawing, sight};
 pub use exploration_plan::exploration_plan;
 pub use figure_chart::figure_chart;
-pub use figure_lines::{FigureLine, TestKind, figure_lines, figures_csv};
+pub use figure_lines::{FigureLine, TestKind, figure_lines, figures_csv, lines_of_figure};
 pub use figures_page::{figures_page, power_sentence};
 pub use floor_plan::{FloorPlan, FreeCells};
 pub use journal::Journal;

@@ -5,7 +5,7 @@ use super::drawing::{drawing, line, percent, text, tooltip};
 use super::figure_chart::rate_steps;
 use super::search_lines::SearchLine;
 use svg::Node;
-use svg::node::element::{Circle, Group, Path, SVG};
+use svg::node::element::{Circle, Group, Path, SVG, Text};
 
 /// A cost of a setting, for the axis to the right.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,7 +25,7 @@ pub fn pareto_chart(lines: &[SearchLine], cost: Cost) -> SVG {
         Cost::Time => line.work * ms_per_work,
         Cost::MapSize => line.map_bytes / 1e3,
     };
-    let axes = Axes { left: 62.0, top: 14.0, width: 500.0, height: 300.0 };
+    let axes = Axes { left: 62.0, top: 30.0, width: 500.0, height: 300.0 };
     let steps = round_steps(confirmed.iter().map(|line| cost_of(line)).fold(0.0, f64::max));
     let most = steps.last().copied().unwrap_or(1.0);
     let lowest = confirmed.iter().map(|line| line.success_rate_low).fold(0.9, f64::min);
@@ -33,7 +33,7 @@ pub fn pareto_chart(lines: &[SearchLine], cost: Cost) -> SVG {
     let height = |rate: f64| ((rate - floor) / (1.0 - floor)).max(0.0);
     let rates = rate_steps(floor);
 
-    let mut chart = drawing(590.0, 368.0).add(axes.grid(&rates, |rate| format!("{:.0} %", 100.0 * rate), height));
+    let mut chart = drawing(590.0, 384.0).add(axes.grid(&rates, |rate| format!("{:.0} %", 100.0 * rate), height));
     for step in &steps {
         chart.append(text("middle", (axes.x(step / most), axes.y(0.0) + 20.0), format!("{step}")));
     }
@@ -58,9 +58,12 @@ pub fn pareto_chart(lines: &[SearchLine], cost: Cost) -> SVG {
         }
     }
     chart.append(Group::new().set("class", "series0").add(Path::new().set("class", "trace").set("d", trace)));
-    for line in confirmed {
-        chart.append(mark(line, axes.x(cost_of(line) / most), &axes, height));
+    let x_of = |line: &SearchLine| axes.x(cost_of(line) / most);
+    for line in &confirmed {
+        chart.append(mark(line, x_of(line), &axes, height));
     }
+    // Over all marks and lines.
+    confirmed.iter().filter_map(|line| label(line, x_of(line), &axes, height)).for_each(|label| chart.append(label));
     chart
 }
 
@@ -80,14 +83,20 @@ fn mark(of: &SearchLine, x: f64, axes: &Axes, height: impl Fn(f64) -> f64) -> Gr
     if of.is_chosen {
         group.append(Circle::new().set("class", "truth").set("cx", x).set("cy", y).set("r", 9));
     }
-    let label = match (of.setting, of.is_chosen) {
-        (0, _) => format!("origin {}", percent(of.success_rate.unwrap_or(0.0))),
-        (_, true) => format!("chosen {}", percent(of.success_rate.unwrap_or(0.0))),
-        _ => return group,
+    group
+}
+
+/// What the scenario as given and the chosen setting are called.
+fn label(of: &SearchLine, x: f64, axes: &Axes, height: impl Fn(f64) -> f64) -> Option<Text> {
+    let rate = of.success_rate.unwrap_or(0.0);
+    let (name, y) = match (of.setting, of.is_chosen) {
+        (0, _) => ("origin", axes.y(height(rate)) + 15.0),
+        (_, true) => ("chosen", axes.y(height(rate)) - 9.0),
+        _ => return None,
     };
-    // Towards the middle, where there is room.
+    // Towards the middle, where there is room; the two labels on different sides, for the marks may coincide.
     let (anchor, aside) = if x < axes.x(0.5) { ("start", 11.0) } else { ("end", -11.0) };
-    group.add(text(anchor, (x + aside, y + 14.0), label))
+    Some(text(anchor, (x + aside, y), format!("{name} {}", percent(rate))).set("class", "label"))
 }
 
 /// Milliseconds for a unit of work, over all confirmed trials.

@@ -219,7 +219,15 @@ impl RunFolder {
     /// # Errors
     /// When the link can't be made, or something else of that name is in the way.
     pub fn link_latest(&self) -> Result<(), RunFolderError> {
-        let (Some(parent), Some(name)) = (self.path.parent(), self.path.file_name()) else { return Ok(()) };
+        Self::link_latest_to(&self.path)
+    }
+
+    /// The same for a folder that need not be of a run.
+    ///
+    /// # Errors
+    /// As [`Self::link_latest`].
+    pub fn link_latest_to(path: &Path) -> Result<(), RunFolderError> {
+        let (Some(parent), Some(name)) = (path.parent(), path.file_name()) else { return Ok(()) };
         let (link, partial) = (parent.join("latest"), parent.join(".latest.partial"));
         if link.symlink_metadata().is_ok_and(|metadata| !metadata.is_symlink()) {
             let in_the_way = std::io::Error::other("something that is not a link is in the way; move it");

@@ -78,7 +78,7 @@ fn confirmed(lines: &[SearchLine], facts: &SearchFacts<'_>) -> Markup {
             @for line in lines.iter().filter(|line| line.trials > 0) { tr {
                 td { (line.setting) @if line.setting == 0 { " origin" } @if line.is_chosen { " chosen" } @if line.is_on_front { span.quiet { " front" } } }
                 @for value in line.values.values() { td.number { (value) } }
-                td { (percent(line.success_rate.unwrap_or(0.0))) (format!(" [{:.1}, {:.1}]", 100.0 * line.success_rate_low, 100.0 * line.success_rate_high)) }
+                td { (percent(line.success_rate.unwrap_or(0.0))) (format!(" [{:.1},\u{a0}{:.1}]", 100.0 * line.success_rate_low, 100.0 * line.success_rate_high)) }
                 td.number { (line.trials) }
                 td.number { (format!("{:.2}", line.mean_looks)) }
                 td.number { (format!("{:.1} ms", 1e3 * line.mean_localizer_s)) }
@@ -95,10 +95,16 @@ fn confirmed(lines: &[SearchLine], facts: &SearchFacts<'_>) -> Markup {
 fn header(lines: &[SearchLine]) -> Markup {
     html! { tr {
         th { "setting" }
-        @if let Some(line) = lines.first() { @for key in line.values.keys() { th.number { (key.rsplit('.').next().unwrap_or(key)) } } }
+        @if let Some(line) = lines.first() { @for key in line.values.keys() { th.number { (axis(key)) } } }
         th { "success" } th.number { "trials" } th.number { "looks" } th.number { "time" } th.number { "map" } th.number { "points to origin" }
         th.number { "p, Holm" }
     } }
+}
+
+/// The last part of a key; it may be broken between its words, for there are many columns.
+fn axis(key: &str) -> Markup {
+    let mut words = key.rsplit('.').next().unwrap_or(key).split('_');
+    html! { (words.next().unwrap_or_default()) @for word in words { "_" wbr; (word) } }
 }
 
 fn others(lines: &[SearchLine], facts: &SearchFacts<'_>) -> Markup {
@@ -110,7 +116,7 @@ fn others(lines: &[SearchLine], facts: &SearchFacts<'_>) -> Markup {
             "nothing: the trials were needed elsewhere. Rates of the rungs flatter those that they chose."
         }
         details { summary { "all settings" } div.wide { table {
-            tr { th { "setting" } @if let Some(line) = lines.first() { @for key in line.values.keys() { th.number { (key.rsplit('.').next().unwrap_or(key)) } } } th.number { "rate in rungs" } th.number { "trials" } th { "fate" } }
+            tr { th { "setting" } @if let Some(line) = lines.first() { @for key in line.values.keys() { th.number { (axis(key)) } } } th.number { "rate in rungs" } th.number { "trials" } th { "fate" } }
             @for line in lines { tr {
                 td { (line.setting) }
                 @for value in line.values.values() { td.number { (value) } }
@@ -162,7 +168,7 @@ mod tests {
             wall_s: 3.0,
         };
         let page = search_page(&lines, &facts);
-        for part in ["chosen", "origin 90.0 %", "turn_deg", "beaten by setting 1", "time of a localisation [ms]"] {
+        for part in ["chosen", "origin 90.0 %", "turn_<wbr>deg", "beaten by setting 1", "time of a localisation [ms]"] {
             assert!(page.contains(part), "the page lacks {part:?}");
         }
         // The name space of a drawing is a name, nothing that is fetched.

@@ -22,6 +22,8 @@ use super::{Sample, front_ranks, is_proven};
 pub const FAR_BELOW: f64 = 0.1;
 /// Probability that any setting is called beaten that is not.
 pub const ALPHA: f64 = 0.05;
+/// Trials of each setting in any stage below which nothing is chosen: rates of fewer are hardly rates.
+pub const LEAST_TRIALS: u32 = 5;
 /// Share of all trials that the rungs may use.
 const SEARCH_SHARE: f64 = 0.6;
 
@@ -91,6 +93,28 @@ impl Schedule {
     fn rung_trials(&self, alive: usize) -> u32 {
         let share = self.trials_total as f64 * SEARCH_SHARE / (self.rung_count().max(1) * alive.max(1)) as f64;
         (share as u32).max(1)
+    }
+
+    /// The least trials of all settings together that give each of them [`LEAST_TRIALS`] in every stage.
+    #[must_use]
+    pub fn least_trials_total(&self) -> u64 {
+        let is_enough = |trials_total: u64| {
+            let schedule = Self { trials_total, ..*self };
+            let (mut alive, mut spent, mut least) = (self.settings, 0, u32::MAX);
+            for _ in 0..self.rung_count() {
+                least = least.min(schedule.rung_trials(alive));
+                spent += u64::from(schedule.rung_trials(alive)) * alive as u64;
+                alive = self.after_rung(alive);
+            }
+            // The origin is confirmed even when it is no finalist.
+            let confirmed = (alive + 1).min(self.settings) as u64;
+            least >= LEAST_TRIALS && trials_total.saturating_sub(spent) >= confirmed * u64::from(LEAST_TRIALS)
+        };
+        let mut trials_total = self.settings as u64 * u64::from(LEAST_TRIALS);
+        while !is_enough(trials_total) {
+            trials_total += 1;
+        }
+        trials_total
     }
 
     fn after_rung(&self, settings: usize) -> usize {
@@ -255,6 +279,33 @@ mod tests {
         let standings = simulate(&[0.9, 0.3, 0.88, 0.2], &[5.0, 1.0, 4.0, 0.5], schedule);
         let fates: Vec<bool> = standings.iter().map(|standing| standing.fate == Fate::Finalist).collect();
         assert_eq!(fates, [true, false, true, false]);
+    }
+
+    #[test]
+    fn the_least_total_gives_every_setting_its_trials_in_every_stage_and_one_less_does_not() {
+        for (settings, finalists) in [(32, 8), (4, 2), (5, 1), (2, 1), (3, 8), (100, 1)] {
+            let least = Schedule { settings, finalists, trials_total: 0 }.least_trials_total();
+            let fewest = |trials_total: u64| {
+                let mut fewest = u32::MAX;
+                let schedule = Schedule { settings, finalists, trials_total };
+                // The origin is worst, so that it is confirmed beside the finalists.
+                let standings = search(&schedule, |_, alive, trials| {
+                    fewest = fewest.min(trials);
+                    let sample = |&setting: &usize| Sample {
+                        trials: (0..trials)
+                            .map(|_| TrialResult { is_success: setting > 0, looks: 1, work: 1.0 })
+                            .collect(),
+                        map_bytes: 1.0,
+                        localizer_s: 0.0,
+                    };
+                    Ok::<_, Infallible>(alive.iter().map(sample).collect())
+                });
+                assert!(standings.is_ok());
+                fewest
+            };
+            assert_eq!(fewest(least), LEAST_TRIALS, "{settings} settings, {finalists} finalists");
+            assert!(fewest(least - 1) < LEAST_TRIALS, "{settings} settings, {finalists} finalists: {least}");
+        }
     }
 
     #[test]

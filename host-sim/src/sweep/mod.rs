@@ -24,7 +24,7 @@ pub use figures::{
     with_anywhere,
 };
 pub use front::{Merit, front_ranks};
-pub use halving::{ALPHA, FAR_BELOW, Fate, Schedule, Stage, Standing, choose, confirmed_front, search};
+pub use halving::{ALPHA, FAR_BELOW, Fate, LEAST_TRIALS, Schedule, Stage, Standing, choose, confirmed_front, search};
 pub use holm::holm;
 pub use paper::{PAPER_CLAIMS, PAPER_OPENINGS, PaperClaim, PaperOpening, paper_claim};
 pub use power::{Demand, independent_discordance};

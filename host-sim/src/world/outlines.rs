@@ -31,10 +31,17 @@ impl Outlines {
     /// The sides of `surfaces` between two heights \[m\].
     #[must_use]
     pub fn new(surfaces: &Surfaces, slice_m: (f32, f32)) -> Self {
+        Self::with_closed(surfaces, slice_m, &[])
+    }
+
+    /// The sides of `surfaces` between two heights \[m\], and what is closed beside them, as by a door.
+    #[must_use]
+    pub fn with_closed(surfaces: &Surfaces, slice_m: (f32, f32), closed: &[[Point2; 2]]) -> Self {
         let slab = Slab { low: f64::from(slice_m.0), high: f64::from(slice_m.1) };
         let mut sides: Vec<[Point2; 2]> = triangles(surfaces)
             .flat_map(|triangle| outline(&triangle, slab))
             .map(|side| side.map(|[x, y]| Point2::new(x as f32, y as f32)))
+            .chain(closed.iter().copied())
             .map(|[a, b]| if (b.x, b.y) < (a.x, a.y) { [b, a] } else { [a, b] })
             .collect();
         let bits = |[a, b]: &[Point2; 2]| [a.x, a.y, b.x, b.y].map(f32::to_bits);

@@ -42,7 +42,13 @@ impl RangeSensor {
     /// A sensor among `surfaces`.
     #[must_use]
     pub fn new(surfaces: &Surfaces, options: &RangeSensorOptions) -> Self {
-        Self { options: *options, outlines: Outlines::new(surfaces, options.slice_m) }
+        Self::with_closed(surfaces, options, &[])
+    }
+
+    /// A sensor among `surfaces`, and what is closed beside them, as by a door.
+    #[must_use]
+    pub fn with_closed(surfaces: &Surfaces, options: &RangeSensorOptions, closed: &[[Point2; 2]]) -> Self {
+        Self { options: *options, outlines: Outlines::with_closed(surfaces, options.slice_m, closed) }
     }
 
     /// What the sensor is like.

@@ -85,18 +85,19 @@ fn describe_import(report: &ImportReport) -> Result<()> {
     }
     console::print(&table.to_string())?;
     console::print(&format!(
-        "{} models, {} segments, {} shorter than {} m left out, {} textured materials taken as mid grey",
-        report.models.len(),
-        report.segment_count(),
+        "{}, {}, {} shorter than {} m left out, {} taken as mid grey",
+        console::count(report.models.len() as u64, "model"),
+        console::count(report.segment_count() as u64, "segment"),
         report.short_segment_count,
         report.min_edge_m,
-        report.textured_material_count
+        console::count(report.textured_material_count as u64, "textured material")
     ))?;
     for problem in &report.problems {
         console::remark(&format!("note: {problem}"));
     }
     if report.unlisted_problem_count > 0 {
-        console::remark(&format!("note: and {} further problems", report.unlisted_problem_count));
+        let further = console::count(report.unlisted_problem_count as u64, "further problem");
+        console::remark(&format!("note: and {further}"));
     }
     Ok(())
 }

@@ -36,6 +36,15 @@ impl Grid {
         Point2::new(middle(self.west, cell % self.width), middle(self.south, cell / self.width))
     }
 
+    /// The sides of a cell that others share, each with the cell beyond it.
+    pub(super) fn sides(&self, cell: usize) -> impl Iterator<Item = (usize, [Point2; 2])> + use<> {
+        let (center, half) = (self.center(cell), 0.5 * self.cell_m as f32);
+        let corner = |x: f32, y: f32| Point2::new(center.x + x * half, center.y + y * half);
+        let [low, east, north, high] = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0)];
+        let sides = [[low, north], [east, high], [low, east], [north, high]];
+        self.beside(cell).into_iter().zip(sides).filter_map(|(beside, side)| Some((beside?, side)))
+    }
+
     pub(super) const fn is_on_border(&self, cell: usize) -> bool {
         let (x, y) = (cell % self.width, cell / self.width);
         x == 0 || y == 0 || x + 1 == self.width || y + 1 == self.height
@@ -56,7 +65,7 @@ impl Grid {
         libm::floor(along_m / self.cell_m).clamp(0.0, count as f64 - 1.0) as usize
     }
 
-    /// The cells that share a side with a cell.
+    /// The cells that share a side with a cell: west, east, south, north.
     pub(super) fn beside(&self, cell: usize) -> [Option<usize>; 4] {
         let (x, y) = (cell % self.width, cell / self.width);
         [

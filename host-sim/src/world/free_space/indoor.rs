@@ -19,12 +19,16 @@ pub(super) enum IndoorRule {
     FloorAndCeiling,
 }
 
+/// What is indoors.
+pub(super) struct Indoors {
+    pub(super) rule: IndoorRule,
+    pub(super) regions: Vec<Vec<usize>>,
+    /// For each cell of the grid whether the robot touches nothing there, indoors or not.
+    pub(super) is_clear: Vec<bool>,
+}
+
 /// The indoor regions by the rule that gives the larger one.
-pub(super) fn indoor_regions(
-    surfaces: &Surfaces,
-    grid: &Grid,
-    options: &FreeSpaceOptions,
-) -> (IndoorRule, Vec<Vec<usize>>) {
+pub(super) fn indoor_regions(surfaces: &Surfaces, grid: &Grid, options: &FreeSpaceOptions) -> Indoors {
     let is_touched = touched_cells(surfaces, grid, options);
     let level_in = |low: f64, high: f64| {
         let mut coverage = Coverage::new(grid);
@@ -43,11 +47,12 @@ pub(super) fn indoor_regions(
     let walled_in = regions(grid, if models_floor { &with_floor } else { &walled_in });
     let covered = regions(grid, &both(&is_clear, &both(&has_floor, &has_ceiling)));
     let largest = |regions: &[Vec<usize>]| regions.iter().map(Vec::len).max().unwrap_or(0);
-    if largest(&covered) > largest(&walled_in) {
+    let (rule, regions) = if largest(&covered) > largest(&walled_in) {
         (IndoorRule::FloorAndCeiling, covered)
     } else {
         (IndoorRule::WalledIn, walled_in)
-    }
+    };
+    Indoors { rule, regions, is_clear }
 }
 
 /// Cells that a surface in the robot's height touches.

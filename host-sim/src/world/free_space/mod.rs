@@ -17,7 +17,7 @@ use super::{Surfaces, WireframeWorld};
 use crate::random::Stream;
 use coverage::Grid;
 use edgeloc::geometry::Point2;
-use indoor::{IndoorRule, OUTSIDE_BALL_M, indoor_regions};
+use indoor::{IndoorRule, Indoors, OUTSIDE_BALL_M, indoor_regions};
 
 pub(super) use coverage::{Slab, outline};
 pub(super) use indoor::triangles;
@@ -58,6 +58,7 @@ pub struct FreeSpace {
     cells: Vec<usize>,
     /// For each cell of the grid its place in `cells`, or [`NOT_FREE`].
     numbers: Vec<u32>,
+    exits: Vec<[Point2; 2]>,
     options: FreeSpaceOptions,
     rule: IndoorRule,
     other_regions: Regions,
@@ -104,7 +105,7 @@ impl FreeSpace {
         check(options)?;
         let grid = grid_over(&world.surfaces, options)?;
         check_row_steps(&world.surfaces, &grid)?;
-        let (rule, mut regions) = indoor_regions(&world.surfaces, &grid, options);
+        let Indoors { rule, mut regions, is_clear } = indoor_regions(&world.surfaces, &grid, options);
         if regions.is_empty() {
             return Err(FreeSpaceError::NoRoom { world: world.name.clone(), robot_radius_m: options.robot_radius_m });
         }
@@ -114,8 +115,11 @@ impl FreeSpace {
         for (number, &cell) in (0_u32..).zip(&cells) {
             numbers[cell] = number;
         }
+        let is_outside = |cell: usize| is_clear[cell] && numbers[cell] == NOT_FREE;
+        let exits = cells.iter().flat_map(|&cell| grid.sides(cell).filter(|&(beside, _)| is_outside(beside)));
+        let exits = exits.map(|(_, side)| side).collect();
         let other_regions = Regions { region_count: regions.len(), cell_count: regions.iter().map(Vec::len).sum() };
-        Ok(Self { grid, cells, numbers, options: *options, rule, other_regions })
+        Ok(Self { grid, cells, numbers, exits, options: *options, rule, other_regions })
     }
 
     /// Whether the cell at a point of the floor is free.
@@ -128,6 +132,12 @@ impl FreeSpace {
     pub(crate) fn number_at(&self, point: Point2) -> Option<usize> {
         let number = self.numbers[self.grid.cell_at(point)?];
         (number != NOT_FREE).then_some(number as usize)
+    }
+
+    /// Where the robot could leave: sides of free cells beyond which it touches nothing either, in doors to the outside.
+    #[must_use]
+    pub fn exits(&self) -> &[[Point2; 2]] {
+        &self.exits
     }
 
     /// What the robot needs, as this was found for.

@@ -37,6 +37,17 @@ fn a_bare_room_is_free_but_for_the_robots_radius_at_the_walls() {
 }
 
 #[test]
+fn the_exits_lie_in_the_hole_of_a_wall() {
+    let exits = |hole_m| free(&room(hole_m, |_| {})).expect("a room").exits().to_vec();
+    assert!(exits(0.0).is_empty());
+    let exits = exits(1.2);
+    // Over the width of the hole, less a radius and up to a cell and a half at each jamb, and no farther out than it.
+    let across = exits.iter().map(|[a, b]| (a.y - b.y).abs()).sum::<f32>();
+    assert!((0.5..=0.71).contains(&across), "{across} m: {exits:?}");
+    assert!(exits.iter().flatten().all(|end| end.x > 3.5 && end.x < 5.0 && (end.y - 1.5).abs() <= 0.36), "{exits:?}");
+}
+
+#[test]
 fn no_surface_within_the_slice_comes_nearer_than_the_radius() {
     let table = [[1.0, 1.0, 0.7], [2.0, 1.8, 0.75]];
     let space = free(&room(0.0, |room| room.add_solid(table[0], table[1]))).expect("a room");

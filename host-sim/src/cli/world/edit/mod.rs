@@ -20,7 +20,8 @@ use std::process::{Command, Stdio};
 ///
 /// The page shows the wire-frame from any viewpoint, visible edges solid, hidden ones faint; click an edge or draw a
 /// rectangle to hide and show, with undo, and save. The address holds a random word without which nothing is answered.
-/// Saving replaces the file as a whole and keeps no copy of the old one: it is text, made for version control.
+/// Saving replaces the file as a whole, without the # comments that it had, and keeps no copy of the old one: it is
+/// text, made for version control.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  edgeloc world edit office-1.edgeworld\n  \
                         edgeloc world edit small_house.edgeworld --views fine.views --no-browser --port 8000")]

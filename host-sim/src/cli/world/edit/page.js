@@ -41,10 +41,12 @@ async function look() {
   draw();
 }
 
-async function change(path, body = "") {
+/// Changes something; `words` say what was done.
+async function change(path, body = "", words = "") {
   try {
     const state = await ask(path, body);
     if (path === "undo" || path === "redo") viewpoint = state.viewpoint;
+    hint(words);
     await look();
   } catch (error) { hint(error.message); }
 }
@@ -60,8 +62,10 @@ async function save(query = "") {
   }
 }
 
-const setVisible = (edges, isVisible) =>
-  change(`${isVisible ? "show" : "hide"}?viewpoint=${viewpoint}`, JSON.stringify(edges));
+const setVisible = (edges, isVisible, words) =>
+  change(`${isVisible ? "show" : "hide"}?viewpoint=${viewpoint}`, JSON.stringify(edges), words);
+const undo = () => change("undo", "", "Undone");
+const redo = () => change("redo", "", "Done again");
 
 function tellState(state) {
   get("undo").disabled = !state.can_undo;
@@ -246,9 +250,9 @@ view.addEventListener("pointerup", () => {
     const isShown = tool === "show";
     const inside = drawn().filter(([, x1, y1, x2, y2, isVisible]) =>
       isIn(x1, y1) && isIn(x2, y2) && Boolean(isVisible) !== isShown);
-    hint(`${inside.length} ${inside.length === 1 ? "edge" : "edges"} ${isShown ? "shown" : "hidden"}`);
-    if (inside.length) setVisible(inside.map(([edge]) => edge), isShown);
-    else draw();
+    const words = `${inside.length} ${inside.length === 1 ? "edge" : "edges"} ${isShown ? "shown" : "hidden"}`;
+    if (inside.length) setVisible(inside.map(([edge]) => edge), isShown, words);
+    else { hint(words); draw(); }
   }
 });
 
@@ -300,8 +304,8 @@ document.addEventListener("keydown", (event) => {
   const act = (action) => { event.preventDefault(); action(); };
   if (event.ctrlKey || event.metaKey) {
     if (key === "s") act(() => save());
-    else if (key === "y" || (key === "z" && event.shiftKey)) act(() => change("redo"));
-    else if (key === "z") act(() => change("undo"));
+    else if (key === "y" || (key === "z" && event.shiftKey)) act(redo);
+    else if (key === "z") act(undo);
     return;
   }
   const isElsewhere = event.target.matches("select, button");
@@ -323,8 +327,8 @@ document.addEventListener("keydown", (event) => {
 for (const button of document.querySelectorAll("[data-tool]")) {
   button.addEventListener("click", () => take(button.dataset.tool));
 }
-get("undo").addEventListener("click", () => change("undo"));
-get("redo").addEventListener("click", () => change("redo"));
+get("undo").addEventListener("click", undo);
+get("redo").addEventListener("click", redo);
 get("save").addEventListener("click", () => save());
 get("help").addEventListener("click", () => get("keys").showModal());
 get("viewpoint").addEventListener("change", (event) => goTo(Number(event.target.value)));
