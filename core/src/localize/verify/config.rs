@@ -14,7 +14,7 @@ pub struct VerificationConfig {
     pub confidence: f32,
     /// Hypotheses that are posed more closely after each look, 1 to 256.
     pub refined: u16,
-    /// Hypotheses that are posed most closely, 1 to `refined`.
+    /// Places that are posed most closely and compared, 1 to `refined`.
     pub finalists: u16,
 }
 
@@ -25,7 +25,7 @@ impl VerificationConfig {
     /// The values that the study of the office settled on.
     #[must_use]
     pub const fn reference() -> Self {
-        Self { cells_per_side: 11, headings: 1, confidence: 0.45, refined: 60, finalists: 10 }
+        Self { cells_per_side: 7, headings: 1, confidence: 0.45, refined: 60, finalists: 12 }
     }
 
     /// Whether every parameter is in range.

@@ -1,7 +1,7 @@
 //! A pose that the robot may have had at the first look.
 
 use super::Evidence;
-use crate::database::NodeId;
+use crate::database::{NodeId, TopologicalDatabase};
 use crate::geometry::Point2;
 use core::cmp::Ordering;
 use zerocopy::{FromBytes, Immutable, IntoBytes};
@@ -30,8 +30,9 @@ impl Hypothesis {
         NodeId(self.node)
     }
 
-    /// World position, given the node's.
-    pub(super) fn position(&self, node: Point2) -> Point2 {
+    /// Position in the world frame.
+    pub(super) fn world_position(&self, database: &TopologicalDatabase<'_>) -> Point2 {
+        let node = database.node(self.node()).map_or(Point2::default(), |node| node.position());
         Point2::new(node.x + self.offset_m[0], node.y + self.offset_m[1])
     }
 

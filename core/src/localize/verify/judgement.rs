@@ -21,36 +21,27 @@ pub(super) struct Judgement {
     pub(super) places: Rivals,
 }
 
-/// Judges hypotheses, of which the best comes first; `None` when there are none.
-pub(super) fn judge<'h>(
-    hypotheses: &(impl Iterator<Item = &'h Hypothesis> + Clone),
+/// Judges hypotheses, the best first; `None` when there are none.
+pub(super) fn judge(
+    hypotheses: &[Hypothesis],
     database: &TopologicalDatabase<'_>,
     segment_count: u32,
 ) -> Option<Judgement> {
-    let best = *hypotheses.clone().reduce(|best, other| if other.score_q20 > best.score_q20 { other } else { best })?;
-    let position = |hypothesis: &Hypothesis| {
-        let node = database.node(hypothesis.node()).map_or(Point2::default(), |node| node.position());
-        hypothesis.position(node)
-    };
+    let best = *hypotheses.first()?;
     let scale = seen_weight(segment_count) / (1 << 20) as f32;
     let behind = |hypothesis: &Hypothesis| (best.score_q20 - hypothesis.score_q20) as f32 * scale;
     let mut places = Rivals::default();
     let mut confidence = f32::INFINITY;
-    // The best that is a place of its own, again and again until there is no room or none left.
-    loop {
-        let apart = |hypothesis: &&Hypothesis| {
-            let here = position(hypothesis);
-            places.iter().all(|place: &Rival| place.position.distance(here) > PLACE_RADIUS_M)
-        };
-        let next = hypotheses.clone().filter(apart).reduce(|a, b| if b.score_q20 > a.score_q20 { b } else { a });
-        let Some(next) = next else { break };
+    for next in hypotheses {
+        let here = next.world_position(database);
+        if places.iter().any(|place: &Rival| place.position.distance(here) <= PLACE_RADIUS_M) {
+            continue;
+        }
         if places.iter().count() == 1 {
             confidence = behind(next);
         }
         let odds = math::exp(-LOG_ODDS_PER_CONFIDENCE * behind(next));
-        let here = position(next);
-        let node = nearest_node(database, here);
-        if !places.push(Rival { node, position: here, probability: odds }) {
+        if !places.push(Rival { node: nearest_node(database, here), position: here, probability: odds }) {
             break;
         }
     }

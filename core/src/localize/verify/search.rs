@@ -22,6 +22,9 @@ pub(super) const CHILDREN: usize = HEADINGS * POSITIONS;
 /// and where it has others beside it.
 const GRID_HEADING_LEFT: [f32; 2] = [1.5, 0.7];
 
+/// Hypotheses nearer to each other than this are at the same place \[m\].
+const PLACE_APART_M: f32 = 0.5;
+
 /// How a hypothesis is posed more closely.
 #[derive(Debug, Clone, Copy)]
 struct Stage {
@@ -80,9 +83,14 @@ impl<'m> Search<'m> {
         (self.ranked_count, self.refined_count) = (0, 0);
     }
 
-    /// The best hypotheses, closely posed, the best first; then the best of the grid.
-    pub(super) fn hypotheses(&self) -> impl Iterator<Item = &Hypothesis> + Clone {
-        self.refined[..self.refined_count].iter().chain(&self.ranked[..self.ranked_count])
+    /// The best hypothesis of each place, closely posed, the best first.
+    pub(super) fn places(&self) -> &[Hypothesis] {
+        &self.refined[..self.refined_count]
+    }
+
+    /// The best hypotheses of the grid about each node, the best first.
+    pub(super) fn ranked(&self) -> &[Hypothesis] {
+        &self.ranked[..self.ranked_count]
     }
 
     /// Takes the last of `looks` into account.
@@ -95,9 +103,25 @@ impl<'m> Search<'m> {
         self.check_grid(database, checker, looks);
         self.refined_count = self.ranked_count.min(self.refined.len());
         self.refined[..self.refined_count].copy_from_slice(&self.ranked[..self.refined_count]);
-        for (stage, keep) in STAGES.iter().zip([self.config.refined, self.config.finalists]) {
-            self.refine(stage, usize::from(keep), database, checker, looks);
+        let [coarse, close] = &STAGES;
+        self.refine(coarse, database, checker, looks);
+        self.keep_places(database);
+        self.refine(close, database, checker, looks);
+    }
+
+    /// Keeps the best hypothesis of each place: what lies close beside a better one would be refined to the same pose.
+    fn keep_places(&mut self, database: &TopologicalDatabase<'_>) {
+        let mut kept = 0;
+        for index in 0..self.refined_count {
+            let hypothesis = self.refined[index];
+            let here = hypothesis.world_position(database);
+            let is_apart = |other: &Hypothesis| other.world_position(database).distance(here) > PLACE_APART_M;
+            if kept < usize::from(self.config.finalists) && self.refined[..kept].iter().all(is_apart) {
+                self.refined[kept] = hypothesis;
+                kept += 1;
+            }
         }
+        self.refined_count = kept;
     }
 
     /// What the grid leaves the heading to be off \[rad\].
@@ -172,11 +196,10 @@ impl<'m> Search<'m> {
         }
     }
 
-    /// Poses the first `keep` hypotheses more closely, by all looks, and ranks them anew.
+    /// Poses the hypotheses more closely, by all looks, and ranks them anew.
     fn refine(
         &mut self,
         stage: &Stage,
-        keep: usize,
         database: &TopologicalDatabase<'_>,
         checker: &mut Checker<'_>,
         looks: &KeptLooks<'_>,
@@ -201,7 +224,7 @@ impl<'m> Search<'m> {
                 parent.heading_error_rad + turn * stage.heading_step * heading_left_rad,
             )
         };
-        let parents = &mut self.refined[..keep.min(self.refined_count)];
+        let parents = &mut self.refined[..self.refined_count];
         let children = &mut self.children[..parents.len() * poses];
         children.fill(Evidence::default());
         // The look that is drawn comes first, to spare a drawing.

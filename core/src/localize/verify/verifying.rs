@@ -2,6 +2,7 @@
 
 use super::VerificationConfig;
 use super::check::Checker;
+use super::hypothesis::Hypothesis;
 use super::judgement::{Judgement, judge, nearest_node};
 use super::kept_looks::KeptLooks;
 use super::memory::Memory;
@@ -71,7 +72,8 @@ impl<'m> VerifyingLocalizer<'m> {
         self.search.look(&self.database, &mut self.checker, &self.looks);
         let Self { search, candidates, .. } = self;
         candidates.replace(|node| {
-            let scores = search.hypotheses().filter(|hypothesis| hypothesis.node() == node);
+            let of_node = |hypothesis: &&Hypothesis| hypothesis.node() == node;
+            let scores = search.places().iter().chain(search.ranked()).filter(of_node);
             scores.map(|hypothesis| i64::from(hypothesis.score_q20) << 10).max().unwrap_or(0)
         });
         let decision = self.decide();
@@ -101,7 +103,7 @@ impl<'m> VerifyingLocalizer<'m> {
     fn decide(&mut self) -> Decision {
         let has_looked_enough = self.looks.is_full();
         let is_poor = self.looks.seen_q4() < POOR_PX * 16;
-        let judgement = judge(&self.search.hypotheses(), &self.database, self.looks.segment_count());
+        let judgement = judge(self.search.places(), &self.database, self.looks.segment_count());
         match judgement {
             Some(judgement) if !is_poor && self.is_sure(&judgement, has_looked_enough) => {
                 Decision::Localized(self.localized(&judgement))
