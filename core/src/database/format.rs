@@ -1,11 +1,11 @@
-//! The byte format of a topological database, version 1.
+//! The byte format of a topological database, version 2.
 //!
 //! Little-endian, no alignment needed. Offsets in bytes:
 //!
 //! | offset | type | content |
 //! |---:|---|---|
 //! | 0 | 8 bytes | magic `"edgemap\n"` |
-//! | 8 | u16 | version, 1 |
+//! | 8 | u16 | version, 2 |
 //! | 10 | u16 | views learned at each node, at least 1 |
 //! | 12 | u32 | CRC-32 (ISO-HDLC) of the whole database but these four bytes |
 //! | 16 | u32 | length of the whole database; bytes after it are ignored |
@@ -18,8 +18,12 @@
 //! | 48 | f32 | camera height \[m\] |
 //! | 52 | f32 | near limit \[m\] |
 //! | 56 | f32, f32 | least and greatest depth of a stereo match that was kept \[m\] |
-//! | 64 | N x 16 | the nodes |
-//! | 64 + 16 N | S x 12 | the segments, node after node |
+//! | 64 | f32 | self-agreement, above 0 to 1; 0 when it was not measured |
+//! | 68 | N x 16 | the nodes |
+//! | 68 + 16 N | S x 12 | the segments, node after node |
+//!
+//! The self-agreement is how well the map explains what was seen while it was learned: what the verifying localiser's
+//! score is for a robot that stands at one node, looks around, and is told its pose beside another.
 //!
 //! A node is
 //!
@@ -37,17 +41,18 @@
 //!
 //! ```text
 //! 0x00 65 64 67 65 6d 61 70 0a | magic
-//! 0x08 01 00 0c 00 89 86 dc c0 | version 1; 12 views; checksum 0xc0dc8689
-//! 0x10 5c 00 00 00 01 00 00 00 | 92 bytes; 1 node
+//! 0x08 02 00 0c 00 89 86 dc c0 | version 2; 12 views; checksum 0xCRC
+//! 0x10 60 00 00 00 01 00 00 00 | 96 bytes; 1 node
 //! 0x18 01 00 00 00 80 02 e0 01 | 1 segment; 640 x 480 px
 //! 0x20 66 26 fb 43 00 00 a0 43 | focal length 502.3 px; principal point x 320 px,
 //! 0x28 00 00 70 43 8f c2 f5 3d | y 240 px; baseline 0.12 m
 //! 0x30 00 00 80 3f 9a 99 19 3e | camera height 1 m; near limit 0.15 m
 //! 0x38 00 00 80 3e 00 00 80 41 | matches from 0.25 m to 16 m
-//! 0x40 dc 05 00 00 30 f8 ff ff | node 0 at 1.5, -2 m;
-//! 0x48 00 00 00 00 01 00 00 00 | its first segment is 0, it has 1
-//! 0x50 d0 07 f4 01 ee 02 | from 2, 0.5, 0.75 m
-//! 0x56 d0 07 f4 01 06 ff | to 2, 0.5, -0.25 m; the brighter side is to the left of this way
+//! 0x40 00 00 00 00 | self-agreement not measured
+//! 0x44 dc 05 00 00 30 f8 ff ff | node 0 at 1.5, -2 m;
+//! 0x4c 00 00 00 00 01 00 00 00 | its first segment is 0, it has 1
+//! 0x54 d0 07 f4 01 ee 02 | from 2, 0.5, 0.75 m
+//! 0x5a d0 07 f4 01 06 ff | to 2, 0.5, -0.25 m; the brighter side is to the left of this way
 //! ```
 //!
 //! A reader refuses any other version; a writer of a changed layout raises it.
@@ -59,7 +64,7 @@ use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout, Unaligned};
 /// The first eight bytes.
 pub const MAGIC: [u8; 8] = *b"edgemap\n";
 /// The version this crate reads and writes.
-pub const VERSION: u16 = 1;
+pub const VERSION: u16 = 2;
 /// Where the checksum itself lies.
 pub const CRC_BYTES: Range<usize> = 12..16;
 /// Length of the header.
@@ -97,6 +102,7 @@ pub(super) struct Header {
     pub(super) camera_height_m: F32,
     pub(super) near_limit_m: F32,
     pub(super) model_depths_m: [F32; 2],
+    pub(super) self_agreement: F32,
 }
 
 #[derive(Debug, Clone, Copy, FromBytes, IntoBytes, Immutable, KnownLayout, Unaligned)]
@@ -128,6 +134,6 @@ mod tests {
 
     #[test]
     fn the_table_above_states_the_true_lengths() {
-        assert_eq!((HEADER_LEN, NODE_LEN, SEGMENT_LEN), (64, 16, 12));
+        assert_eq!((HEADER_LEN, NODE_LEN, SEGMENT_LEN), (68, 16, 12));
     }
 }

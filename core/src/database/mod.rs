@@ -8,4 +8,4 @@ mod reader;
 mod writer;
 
 pub use reader::{Node, NodeId, OpenError, TopologicalDatabase};
-pub use writer::{NodeModel, WriteError, encoded_len, write};
+pub use writer::{NodeModel, StateError, WriteError, encoded_len, state_self_agreement, write};

@@ -20,6 +20,7 @@ impl fmt::Display for NodeId {
 pub struct TopologicalDatabase<'a> {
     rig: StereoRig,
     views_per_node: u16,
+    self_agreement: f32,
     nodes: &'a [NodeEntry],
     segments: &'a [SegmentEntry],
 }
@@ -69,7 +70,11 @@ impl<'a> TopologicalDatabase<'a> {
         if expected_first != segment_count as u64 {
             return Err(OpenError::Counts);
         }
-        Ok(Self { rig, views_per_node: header.views_per_node.get(), nodes, segments })
+        let self_agreement = header.self_agreement.get();
+        if !(0.0..=1.0).contains(&self_agreement) {
+            return Err(OpenError::SelfAgreement);
+        }
+        Ok(Self { rig, views_per_node: header.views_per_node.get(), self_agreement, nodes, segments })
     }
 
     /// The rig that the database was learned with.
@@ -82,6 +87,17 @@ impl<'a> TopologicalDatabase<'a> {
     #[must_use]
     pub const fn views_per_node(&self) -> u16 {
         self.views_per_node
+    }
+
+    /// How well the map explains what was seen while it was learned, 0 to 1, if that was measured.
+    #[must_use]
+    pub fn self_agreement(&self) -> Option<f32> {
+        (self.self_agreement > 0.0).then_some(self.self_agreement)
+    }
+
+    /// Length of the database in bytes.
+    pub(super) fn byte_len(&self) -> usize {
+        HEADER_LEN + size_of_val(self.nodes) + size_of_val(self.segments)
     }
 
     /// Number of nodes, at least one.
@@ -187,6 +203,8 @@ pub enum OpenError {
     Counts,
     /// There is no node, or a node without views.
     Empty,
+    /// The self-agreement is not within 0 to 1.
+    SelfAgreement,
     /// The camera makes no sense.
     Camera(CameraError),
     /// The rig makes no sense.
@@ -202,6 +220,7 @@ impl fmt::Display for OpenError {
             Self::Checksum => f.write_str("database checksum does not match: the bytes are damaged"),
             Self::Counts => f.write_str("database counts contradict each other"),
             Self::Empty => f.write_str("database holds no node or no views"),
+            Self::SelfAgreement => f.write_str("database self-agreement is not within 0 to 1"),
             Self::Camera(error) => write!(f, "database camera: {error}"),
             Self::Rig(error) => write!(f, "database rig: {error}"),
         }

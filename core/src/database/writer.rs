@@ -1,11 +1,12 @@
 //! Writing a topological database into bytes.
 
 use super::format::{self, HEADER_LEN, Header, NODE_LEN, NodeEntry, SegmentEntry};
+use super::{OpenError, TopologicalDatabase};
 use crate::geometry::{Point2, Point3, Polarity, Segment3, StereoRig};
 use crate::math;
 use core::fmt;
-use zerocopy::IntoBytes;
 use zerocopy::little_endian::{I16, I32};
+use zerocopy::{FromBytes, IntoBytes};
 
 /// What was learned at one node.
 #[derive(Debug, Clone, Copy)]
@@ -67,6 +68,47 @@ pub fn write(
     Ok(length)
 }
 
+/// States in a database how well it explains what was seen while it was learned; see [`format`](mod@super::format).
+///
+/// # Errors
+/// When `bytes` are no database, or the agreement is not above 0 and at most 1.
+pub fn state_self_agreement(bytes: &mut [u8], agreement: f32) -> Result<(), StateError> {
+    if !(agreement > 0.0 && agreement <= 1.0) {
+        return Err(StateError::Agreement);
+    }
+    let length = TopologicalDatabase::open(bytes).map_err(StateError::Open)?.byte_len();
+    let database = &mut bytes[..length];
+    let mut state = |change: &dyn Fn(&mut Header, u32)| {
+        let checksum = format::checksum(database);
+        if let Ok((header, _)) = Header::mut_from_prefix(database) {
+            change(header, checksum);
+        }
+    };
+    state(&|header, _| header.self_agreement = agreement.into());
+    state(&|header, checksum| header.crc = checksum.into());
+    Ok(())
+}
+
+/// Why an agreement can't be stated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StateError {
+    /// It is not above 0 and at most 1.
+    Agreement,
+    /// The bytes are no database.
+    Open(OpenError),
+}
+
+impl fmt::Display for StateError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Agreement => f.write_str("agreement is not above 0 and at most 1"),
+            Self::Open(error) => error.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for StateError {}
+
 fn header_of(rig: &StereoRig, views_per_node: u16, lengths: [usize; 3]) -> Header {
     let [length, node_count, segment_count] = lengths.map(|value| (value as u32).into());
     Header {
@@ -84,6 +126,7 @@ fn header_of(rig: &StereoRig, views_per_node: u16, lengths: [usize; 3]) -> Heade
         camera_height_m: rig.camera_height_m.into(),
         near_limit_m: rig.near_limit_m.into(),
         model_depths_m: [rig.nearest_model_m.into(), rig.farthest_model_m.into()],
+        self_agreement: 0.0.into(),
     }
 }
 

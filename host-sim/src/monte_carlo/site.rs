@@ -4,10 +4,10 @@ use crate::learning::{
     self, CalibratedRig, CalibrationBench, NodePlacementError, NodeViews, SightCoverage, Surroundings, UNLEARNED_WAY_M,
     Withheld,
 };
-use crate::scenario::{Scenario, Start};
+use crate::scenario::{LocalizerKind, Scenario, Start};
 use crate::uncertainty::Sources;
 use crate::world::{FreeSpace, FreeSpaceError, FreeSpaceOptions, Occluders, ViewpointVisibility, WireframeWorld};
-use edgeloc::database::WriteError;
+use edgeloc::database::{self, TopologicalDatabase, WriteError};
 use edgeloc::geometry::{Point2, Point3, StereoRig};
 use std::sync::Arc;
 
@@ -106,7 +106,16 @@ impl Site {
             }
             learning::keep_most_telling(&mut node.segments, usize::from(scenario.learning.max_segments));
         }
-        learning::write_map(&robot, scenario.learning.views, &learned)
+        let mut bytes = learning::write_map(&robot, scenario.learning.views, &learned)?;
+        if scenario.localizer.kind == LocalizerKind::Edgeloc {
+            let map = TopologicalDatabase::open(&bytes).expect("what was just written");
+            let key = (seed, map_index);
+            let agreement = learning::self_agreement(&map, &robot, &self.node_views, &scenario.uncertainty, key);
+            if let Some(agreement) = agreement {
+                database::state_self_agreement(&mut bytes, agreement).expect("a share, of a map just written");
+            }
+        }
+        Ok(bytes)
     }
 
     /// The rig as the robot of the `map_index`-th map knows it: the one that learned the map and is put down with it.

@@ -67,7 +67,9 @@ impl Sites {
     /// Whether two rows learn the same map with each draw of noise.
     pub(super) fn share_map(&self, a: usize, b: usize) -> bool {
         let sources = |row: usize| &self.settings[row].scenario.uncertainty;
-        self.site_of_row[a] == self.site_of_row[b] && sources(a) == sources(b)
+        // Maps state what the verifying localiser goes by, which takes time to measure, for those who need it.
+        let kind = |row: usize| self.settings[row].scenario.localizer.kind;
+        self.site_of_row[a] == self.site_of_row[b] && sources(a) == sources(b) && kind(a) == kind(b)
     }
 
     /// Whether two rows put the robot down at the same poses. Free space is that of the building without what is

@@ -14,6 +14,7 @@ use crate::localize::workspace::{Rest, sum, words};
 #[derive(Debug)]
 pub struct PoseCheck<'m> {
     checker: Checker<'m>,
+    seen_q4: i32,
 }
 
 impl<'m> PoseCheck<'m> {
@@ -60,7 +61,14 @@ impl<'m> PoseCheck<'m> {
             count += 1;
         }
         checker.draw_segments(&seen[..count]);
-        Ok(Self { checker })
+        let seen_q4 = seen[..count].iter().fold(0_i32, |sum, segment| sum.saturating_add(segment.length_q4()));
+        Ok(Self { checker, seen_q4 })
+    }
+
+    /// Length of the look's segments that entered, in Q4 px: what [`Evidence::score_q20`] asks for.
+    #[must_use]
+    pub const fn seen_q4(&self) -> i32 {
+        self.seen_q4
     }
 
     /// Evidence for a camera at `offset_m` from the node, axes of the world, looking along `heading`; the position may be

@@ -18,9 +18,12 @@ use crate::localize::{
 /// An attempt that saw less than this in all looks was too poor to tell \[px\].
 const POOR_PX: i32 = 300;
 /// After the last look a lead of this part of the confidence asked for is enough.
-const LAST_CONFIDENCE: f32 = 0.5;
-/// Agreement that an answer asks for, before the last look and after it: with less the robot is outside the map.
-const LEAST_SCORES: [f32; 2] = [0.5, 0.38];
+const LAST_CONFIDENCE: f32 = 0.15;
+/// Agreement that an answer asks for, before the last look and after it, as a share of the map's agreement with itself:
+/// with less the robot is outside the map.
+const LEAST_AGREEMENTS: [f32; 2] = [0.85, 0.6];
+/// The map's agreement with itself, where it was not measured: what a good calibration gives.
+const USUAL_AGREEMENT: f32 = 0.6;
 /// Rivals less likely than this are not named.
 const LEAST_PROBABILITY: f32 = 0.01;
 
@@ -30,6 +33,8 @@ pub(in crate::localize) struct VerifyingLocalizer<'m> {
     database: TopologicalDatabase<'m>,
     config: LocalizerConfig,
     confidence: f32,
+    /// Scores that an answer asks for, before the last look and after it, in Q20.
+    least_scores_q20: [i32; 2],
     checker: Checker<'m>,
     looks: KeptLooks<'m>,
     search: Search<'m>,
@@ -53,6 +58,10 @@ impl<'m> VerifyingLocalizer<'m> {
             database,
             config,
             confidence: verification.confidence,
+            least_scores_q20: LEAST_AGREEMENTS.map(|share| {
+                let agreement = share * database.self_agreement().unwrap_or(USUAL_AGREEMENT);
+                (agreement * (1 << 20) as f32) as i32
+            }),
             checker: Checker::new(database.rig(), SegmentFilter::new(&config), memory.planes, memory.view),
             looks: KeptLooks::new(memory.poses, memory.segments),
             search: Search::new(verification, &database, search_memory),
@@ -110,7 +119,7 @@ impl<'m> VerifyingLocalizer<'m> {
             }
             _ if !has_looked_enough => Decision::LookAgain { turn: self.config.turn },
             Some(_) | None if is_poor => Decision::Unknown { reason: UnknownReason::SceneTooPoor },
-            Some(judgement) if !is_outside(&judgement, true) => {
+            Some(judgement) if !self.is_outside(&judgement, true) => {
                 let mut rivals = judgement.places;
                 rivals.retain_likelier(LEAST_PROBABILITY);
                 Decision::Unknown { reason: UnknownReason::Indistinguishable(rivals) }
@@ -121,7 +130,7 @@ impl<'m> VerifyingLocalizer<'m> {
 
     fn is_sure(&self, judgement: &Judgement, is_last_look: bool) -> bool {
         let asked = if is_last_look { self.confidence * LAST_CONFIDENCE } else { self.confidence };
-        judgement.confidence > asked && !is_outside(judgement, is_last_look)
+        judgement.confidence > asked && !self.is_outside(judgement, is_last_look)
     }
 
     /// The answer: the pose at the last look, and the node nearest to it.
@@ -138,9 +147,9 @@ impl<'m> VerifyingLocalizer<'m> {
         let probability = judgement.places.iter().next().map(|place| place.probability);
         Localized { node, pose: Some(pose), probability }
     }
-}
 
-/// Whether even the best place agrees too little with what was seen.
-fn is_outside(judgement: &Judgement, is_last_look: bool) -> bool {
-    judgement.best.score_q20 < (LEAST_SCORES[usize::from(is_last_look)] * (1 << 20) as f32) as i32
+    /// Whether even the best place agrees too little with what was seen.
+    fn is_outside(&self, judgement: &Judgement, is_last_look: bool) -> bool {
+        judgement.best.score_q20 < self.least_scores_q20[usize::from(is_last_look)]
+    }
 }
