@@ -119,7 +119,7 @@ impl core::error::Error for StartError {}
 /// Why a look can't be taken into account.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ObserveError {
-    /// The look has no heading, which this localiser needs.
+    /// The look has no heading: the paper's localiser needs a compass, the verifying one a compass or odometry.
     HeadingMissing,
     /// Histograms can't be built.
     Histograms(BuilderError),
@@ -130,7 +130,7 @@ pub enum ObserveError {
 impl fmt::Display for ObserveError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::HeadingMissing => f.write_str("the look has no heading: the paper's localiser needs a compass"),
+            Self::HeadingMissing => f.write_str("the look has no heading: without a compass the paper's localiser can't work, and the verifying one needs odometry"),
             Self::Histograms(error) => error.fmt(f),
             Self::Capacity(error) => error.fmt(f),
         }

@@ -126,13 +126,12 @@ fn check_localizer(localizer: &LocalizerSettings) -> Result<(), IllegalValue> {
     within("localizer.pgh.distance_bins", pgh.distance_bins, 1..=256, "the paper's best is 15")?;
     within("localizer.pgh.angle_bins", pgh.angle_bins, 1..=256, "the paper's best is 32")?;
     within("localizer.pgh.max_distance_px", pgh.max_distance_px, 1.0..=2048.0, "200 to 600 hardly matter")?;
-    within("localizer.verification.cells_per_side", verification.cells_per_side, 3..=31, "11 is the default")?;
-    within("localizer.verification.headings", verification.headings, 1..=9, "3 where the compass errs by 5 degrees")?;
-    for (key, count) in [("cells_per_side", verification.cells_per_side), ("headings", verification.headings)] {
-        require(count % 2 == 1, &format!("localizer.verification.{key}"), &count, "an odd number", || {
-            "the node and the compass lie in the middle; add one".to_owned()
-        })?;
-    }
+    within("localizer.verification.cells_per_side", verification.cells_per_side, 3..=31, "7 is the default")?;
+    within("localizer.verification.headings", verification.headings, 1..=9, "4 without a compass")?;
+    let cells = verification.cells_per_side;
+    require(cells % 2 == 1, "localizer.verification.cells_per_side", &cells, "an odd number", || {
+        "the node lies in the middle; add one".to_owned()
+    })?;
     within("localizer.verification.confidence", verification.confidence, 0.0..=100.0, "0.45 is the default")?;
     within("localizer.verification.refined", verification.refined, 1..=256, "60 is the default")?;
     let finalists = verification.finalists;

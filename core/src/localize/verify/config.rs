@@ -1,13 +1,15 @@
 //! The parameters of verification, all in one place.
 
+use super::headings::MAX_HEADINGS;
+
 /// Parameters of the verifying localiser, beside those that every localiser has.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VerificationConfig {
     /// Positions tried along either side of the square about each node, odd, 3 to 31. How far apart they lie follows
     /// from the spacing of the nodes, so that the squares reach the neighbours.
     pub cells_per_side: u16,
-    /// Headings tried in every cell of the grid where the compass errs, odd, 1 to 9; an exact compass takes one. One
-    /// will do up to 2 degrees, three are for 5.
+    /// Headings that may be tried in every cell of the grid, 1 to 9: one does for a compass that errs up to 2.5 degrees,
+    /// three beyond; a robot without a compass needs four, along and across the building.
     pub headings: u16,
     /// Confidence above which the best hypothesis is answered, 0 to 100: what it is ahead of the best rival a metre or
     /// more away, times the square root of the segments seen in thirties.
@@ -25,7 +27,7 @@ impl VerificationConfig {
     /// The values that the study of the office settled on.
     #[must_use]
     pub const fn reference() -> Self {
-        Self { cells_per_side: 7, headings: 1, confidence: 0.45, refined: 60, finalists: 12 }
+        Self { cells_per_side: 7, headings: 4, confidence: 0.45, refined: 60, finalists: 12 }
     }
 
     /// Whether every parameter is in range.
@@ -33,8 +35,7 @@ impl VerificationConfig {
         let is_odd = self.cells_per_side % 2 == 1;
         is_odd
             && (3..=31).contains(&self.cells_per_side)
-            && self.headings % 2 == 1
-            && self.headings <= 9
+            && (1..=MAX_HEADINGS as u16).contains(&self.headings)
             && (0.0..=100.0).contains(&self.confidence)
             && (1..=256).contains(&self.refined)
             && (1..=self.refined).contains(&self.finalists)

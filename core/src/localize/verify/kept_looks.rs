@@ -1,6 +1,7 @@
 //! The looks of an attempt, kept until its end so that closer hypotheses can be checked against all of them.
 
 use super::SeenSegment;
+use super::dominant::DominantDirection;
 use super::image_frame::ImageFrame;
 use crate::geometry::{Angle, Heading, Point2, Segment2};
 use crate::localize::segment_filter::SegmentFilter;
@@ -27,17 +28,20 @@ pub(super) struct KeptLooks<'m> {
     segments: &'m mut [SeenSegment],
     count: usize,
     seen_q4: i32,
-    /// Standard deviation of the compass at the first look \[rad\].
-    heading_spread_rad: f32,
+    /// Standard deviation of the compass at the first look \[rad\]; none without a compass.
+    compass_spread_rad: Option<f32>,
+    /// Directions of edges relative to the first look's heading as [`LookPose`] has it.
+    dominant: DominantDirection,
 }
 
 impl<'m> KeptLooks<'m> {
     pub(super) fn new(poses: &'m mut [LookPose], segments: &'m mut [SeenSegment]) -> Self {
-        Self { poses, segments, count: 0, seen_q4: 0, heading_spread_rad: 0.0 }
+        Self { poses, segments, count: 0, seen_q4: 0, compass_spread_rad: None, dominant: DominantDirection::NONE }
     }
 
     pub(super) fn clear(&mut self) {
         (self.count, self.seen_q4) = (0, 0);
+        self.dominant = DominantDirection::NONE;
     }
 
     pub(super) const fn count(&self) -> usize {
@@ -58,8 +62,14 @@ impl<'m> KeptLooks<'m> {
         self.seen_q4
     }
 
-    pub(super) const fn heading_spread_rad(&self) -> f32 {
-        self.heading_spread_rad
+    /// Standard deviation of the compass at the first look \[rad\]; none without a compass.
+    pub(super) const fn compass_spread_rad(&self) -> Option<f32> {
+        self.compass_spread_rad
+    }
+
+    /// Where most level edges run, relative to the heading of the first look \[rad\], modulo a quarter turn.
+    pub(super) fn dominant_rad(&self) -> Option<f32> {
+        self.dominant.peak_rad()
     }
 
     pub(super) fn pose(&self, look: usize) -> LookPose {
@@ -75,7 +85,7 @@ impl<'m> KeptLooks<'m> {
     /// Keeps a look: the longest of its segments, and how the camera stood. Does nothing when there is no room.
     pub(super) fn push(
         &mut self,
-        (heading, motion): (HeadingPrior, Option<Motion>),
+        (heading, motion): (Option<HeadingPrior>, Option<Motion>),
         segments: &[Segment2],
         filter: &SegmentFilter,
         frame: &ImageFrame,
@@ -99,17 +109,27 @@ impl<'m> KeptLooks<'m> {
         }
         self.seen_q4 = places[..kept].iter().fold(self.seen_q4, |sum, seen| sum.saturating_add(seen.length_q4()));
         let (heading_rad, way_m) = self.next_pose(heading, motion);
+        if self.compass_spread_rad.is_none() {
+            self.dominant.add_image(segments, heading_rad, frame);
+        }
         self.poses[self.count] = LookPose { heading_rad, way_m, segment_count: kept as u32 };
         self.count += 1;
     }
 
+    /// Whether a look can be placed beside those before it: by compass or odometry, and the first of all by anything.
+    pub(super) const fn can_place(&self, heading: Option<HeadingPrior>, motion: Option<Motion>) -> bool {
+        self.count == 0 || heading.is_some() || motion.is_some()
+    }
+
     /// The compass speaks at the first look; after that odometry, where there is one, tells better.
-    fn next_pose(&mut self, heading: HeadingPrior, motion: Option<Motion>) -> (f32, [f32; 2]) {
-        let measured = heading.mean.angle().radians();
+    fn next_pose(&mut self, heading: Option<HeadingPrior>, motion: Option<Motion>) -> (f32, [f32; 2]) {
+        let measured = heading.map_or(0.0, |heading| heading.mean.angle().radians());
         let Some(last) = self.count.checked_sub(1).map(|last| self.pose(last)) else {
-            let spread_rad = math::abs(heading.standard_deviation.radians());
             // Beyond half a radian, and where it makes no sense, the search would not find the heading anyway.
-            self.heading_spread_rad = if spread_rad < 0.5 { spread_rad } else { 0.5 };
+            self.compass_spread_rad = heading.map(|heading| {
+                let spread_rad = math::abs(heading.standard_deviation.radians());
+                if spread_rad < 0.5 { spread_rad } else { 0.5 }
+            });
             return (measured, [0.0; 2]);
         };
         let Some(motion) = motion.filter(|motion| motion.step_m.is_finite()) else { return (measured, last.way_m) };

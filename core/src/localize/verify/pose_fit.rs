@@ -42,7 +42,7 @@ pub(super) fn fit(
         covariance: [[0.0; 3]; 3],
     };
     for gate_px in GATES_PX {
-        let mut normal = Normal::prior(looks.heading_spread_rad(), pose.heading_error_rad);
+        let mut normal = Normal::prior(looks.compass_spread_rad(), pose.heading_error_rad);
         for look in 0..looks.count() {
             let (Some(node), at) = (database.node(hypothesis.node()), looks.pose(look)) else { continue };
             let offset_m = [pose.offset_m[0] + at.way_m[0], pose.offset_m[1] + at.way_m[1]];
@@ -70,9 +70,10 @@ struct Normal {
 }
 
 impl Normal {
-    /// The position known to half a metre, the heading as the compass has it.
-    fn prior(heading_spread_rad: f32, heading_error_rad: f32) -> Self {
-        let heading_weight = 1.0 / math::max(heading_spread_rad * heading_spread_rad, 1e-10);
+    /// The position known to half a metre, the heading as the compass has it, if there is one.
+    fn prior(compass_spread_rad: Option<f32>, heading_error_rad: f32) -> Self {
+        let weight = |spread_rad: f32| 1.0 / math::max(spread_rad * spread_rad, 1e-10);
+        let heading_weight = compass_spread_rad.map_or(0.0, weight);
         Self {
             matrix: [[4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, heading_weight]],
             right: [0.0, 0.0, -heading_error_rad * heading_weight],

@@ -1,7 +1,9 @@
 //! From coarse to close: the grid about every node, then ever closer poses about the best of it.
 
 use super::check::{Checker, Closeness};
+use super::dominant::DominantDirection;
 use super::evidence::CellEvidence;
+use super::headings::Headings;
 use super::hypothesis::{Hypothesis, keep_best};
 use super::kept_looks::KeptLooks;
 use super::lanes::LANES;
@@ -18,10 +20,6 @@ const POSITIONS: usize = SIDE * SIDE;
 const HEADINGS: usize = 3;
 /// Poses tried about a hypothesis.
 pub(super) const CHILDREN: usize = HEADINGS * POSITIONS;
-/// Standard deviations of the compass to either side that a heading of the grid stands for: where it is the only one,
-/// and where it has others beside it.
-const GRID_HEADING_LEFT: [f32; 2] = [1.5, 0.7];
-
 /// Hypotheses nearer to each other than this are at the same place \[m\].
 const PLACE_APART_M: f32 = 0.5;
 
@@ -49,6 +47,10 @@ pub(super) struct Search<'m> {
     config: VerificationConfig,
     /// Distance between neighbouring cells \[m\].
     cell_m: f32,
+    /// The headings that the evidence of the cells was gathered at.
+    headings: Headings,
+    /// Where most level edges of the map run, once somebody asked.
+    dominant_rad: Option<f32>,
     cells: &'m mut [CellEvidence],
     ranked: &'m mut [Hypothesis],
     ranked_count: usize,
@@ -66,6 +68,8 @@ impl<'m> Search<'m> {
         let mut search = Self {
             config: *config,
             cell_m: reach_m(database) / f32::from(config.cells_per_side / 2),
+            headings: Headings::about_compass(0.0, 1),
+            dominant_rad: None,
             cells,
             ranked,
             ranked_count: 0,
@@ -100,7 +104,18 @@ impl<'m> Search<'m> {
         checker: &mut Checker<'_>,
         looks: &KeptLooks<'_>,
     ) {
-        self.check_grid(database, checker, looks);
+        let Some(last) = looks.count().checked_sub(1) else { return };
+        let headings = self.headings_for(database, looks);
+        if last > 0 && headings.is_like(&self.headings) {
+            self.check_grid(last, database, checker, looks);
+        } else {
+            // The first look; or more looks tell better how the building lies, and all is to be checked anew.
+            self.headings = headings;
+            self.cells.fill(CellEvidence::default());
+            for look in 0..=last {
+                self.check_grid(look, database, checker, looks);
+            }
+        }
         self.refined_count = self.ranked_count.min(self.refined.len());
         self.refined[..self.refined_count].copy_from_slice(&self.ranked[..self.refined_count]);
         let [coarse, close] = &STAGES;
@@ -124,24 +139,31 @@ impl<'m> Search<'m> {
         self.refined_count = kept;
     }
 
-    /// What the grid leaves the heading to be off \[rad\].
-    fn heading_left_rad(&self, looks: &KeptLooks<'_>) -> f32 {
-        GRID_HEADING_LEFT[usize::from(self.config.headings > 1)] * looks.heading_spread_rad()
+    fn headings_for(&mut self, database: &TopologicalDatabase<'_>, looks: &KeptLooks<'_>) -> Headings {
+        let most = usize::from(self.config.headings);
+        if let Some(spread_rad) = looks.compass_spread_rad() {
+            return Headings::about_compass(spread_rad, most);
+        }
+        let of_map = *self
+            .dominant_rad
+            .get_or_insert_with(|| DominantDirection::of_map(database).peak_rad().unwrap_or_default());
+        Headings::quarter_turns(of_map - looks.dominant_rad().unwrap_or_default(), most)
     }
 
-    fn check_grid(&mut self, database: &TopologicalDatabase<'_>, checker: &mut Checker<'_>, looks: &KeptLooks<'_>) {
-        let Some(look) = looks.count().checked_sub(1) else { return };
+    fn check_grid(
+        &mut self,
+        look: usize,
+        database: &TopologicalDatabase<'_>,
+        checker: &mut Checker<'_>,
+        looks: &KeptLooks<'_>,
+    ) {
         checker.draw(looks, look);
         let pose = looks.pose(look);
         let side = i32::from(self.config.cells_per_side);
         let half = side / 2;
-        let heading_left_rad = self.heading_left_rad(looks);
-        let headings = if heading_left_rad > 0.0 { usize::from(self.config.headings) } else { 1 };
-        let closeness = Closeness {
-            position_m: 0.4 * self.cell_m,
-            heading_rad: math::min(heading_left_rad, looks.heading_spread_rad()),
-            spacing_px: 14.0,
-        };
+        let headings = self.headings;
+        let closeness =
+            Closeness { position_m: 0.4 * self.cell_m, heading_rad: 0.67 * headings.left_rad, spacing_px: 14.0 };
         let per_heading = self.config.cells_per_node();
         let cell_m = self.cell_m;
         let offset_of = |index: i32| [(index % side - half) as f32 * cell_m, (index / side - half) as f32 * cell_m];
@@ -151,9 +173,7 @@ impl<'m> Search<'m> {
         {
             let none = Hypothesis::new(node.id(), [0.0; 2], 0.0);
             let (mut best, mut count) = ([none; VerificationConfig::PER_NODE], 0);
-            for (turn, cells) in cells.chunks_exact_mut(per_heading).take(headings).enumerate() {
-                let turns = turn as f32 - (headings / 2) as f32;
-                let heading_error_rad = turns * 2.0 * heading_left_rad;
+            for (&heading_error_rad, cells) in headings.errors_rad().iter().zip(cells.chunks_exact_mut(per_heading)) {
                 let reach_m = (half + 1) as f32 * self.cell_m;
                 checker.turn(&node, pose.heading_rad + heading_error_rad, (pose.way_m, reach_m));
                 let mut live = (0..).zip(cells).filter(|(index, cell)| {
@@ -204,7 +224,7 @@ impl<'m> Search<'m> {
         checker: &mut Checker<'_>,
         looks: &KeptLooks<'_>,
     ) {
-        let heading_left_rad = self.heading_left_rad(looks);
+        let heading_left_rad = self.headings.left_rad;
         let headings: usize = if heading_left_rad > 0.0 { HEADINGS } else { 1 };
         let poses = headings * POSITIONS;
         let step_m = stage.step * self.cell_m;

@@ -72,12 +72,14 @@ impl<'m> VerifyingLocalizer<'m> {
 
     /// Takes one look into account and decides.
     pub(in crate::localize) fn observe(&mut self, look: &Look<'_>) -> Result<Decision, ObserveError> {
-        let heading = look.heading.ok_or(ObserveError::HeadingMissing)?;
         if self.is_finished {
             self.reset();
         }
+        if !self.looks.can_place(look.heading, look.motion_since_last) {
+            return Err(ObserveError::HeadingMissing);
+        }
         let (filter, frame) = (*self.checker.filter(), *self.checker.frame());
-        self.looks.push((heading, look.motion_since_last), look.scene.segments(), &filter, &frame);
+        self.looks.push((look.heading, look.motion_since_last), look.scene.segments(), &filter, &frame);
         self.search.look(&self.database, &mut self.checker, &self.looks);
         let Self { search, candidates, .. } = self;
         candidates.replace(|node| {
