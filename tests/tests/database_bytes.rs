@@ -81,8 +81,8 @@ fn another_file_and_another_version_are_named_as_such() {
     other[0] = b'E';
     assert_eq!(TopologicalDatabase::open(&other).expect_err("magic"), OpenError::NotADatabase);
     let mut newer = bytes;
-    newer[8..10].copy_from_slice(&2_u16.to_le_bytes());
-    assert_eq!(TopologicalDatabase::open(&with_checksum(newer)).expect_err("version"), OpenError::Version { found: 2 });
+    newer[8..10].copy_from_slice(&3_u16.to_le_bytes());
+    assert_eq!(TopologicalDatabase::open(&with_checksum(newer)).expect_err("version"), OpenError::Version { found: 3 });
 }
 
 #[test]
@@ -212,8 +212,8 @@ proptest! {
         let mut bytes = database_bytes(&RIG, &[TinyNode { position: Point2::default(), segments }]);
         let end = bytes.len();
         // Everything but the node's own counts.
-        bytes[64..72].copy_from_slice(&tables[..8]);
-        bytes[80..end].copy_from_slice(&tables[16..16 + end - 80]);
+        bytes[68..76].copy_from_slice(&tables[..8]);
+        bytes[84..end].copy_from_slice(&tables[16..16 + end - 84]);
         prop_assert!(exercise(&with_checksum(bytes), &[]).is_ok());
     }
 

@@ -227,7 +227,7 @@ fn a_robot_without_a_compass_tells_its_localiser_no_heading() {
     let watch = |look: &LookEvent<'_>| assert_eq!(look.compass, None);
     let record = replay(&sites.all()[0], &sites.settings()[0], 0, None, watch).expect("the map can be learned");
     assert_eq!((record.outcome, record.is_success), (Outcome::Error, false));
-    assert!(record.message.is_some_and(|message| message.contains("needs a compass")));
+    assert!(record.message.is_some_and(|message| message.contains("without a compass")));
 }
 
 #[test]

@@ -41,7 +41,7 @@
 //!
 //! ```text
 //! 0x00 65 64 67 65 6d 61 70 0a | magic
-//! 0x08 02 00 0c 00 89 86 dc c0 | version 2; 12 views; checksum 0xCRC
+//! 0x08 02 00 0c 00 48 ae 4a 49 | version 2; 12 views; checksum 0x494aae48
 //! 0x10 60 00 00 00 01 00 00 00 | 96 bytes; 1 node
 //! 0x18 01 00 00 00 80 02 e0 01 | 1 segment; 640 x 480 px
 //! 0x20 66 26 fb 43 00 00 a0 43 | focal length 502.3 px; principal point x 320 px,

@@ -240,8 +240,22 @@ mod tests {
     #[test]
     fn too_little_room_says_how_much_is_needed() {
         let nodes = [NodeModel { position: Point2::default(), segments: &[] }];
-        let error = write(&StereoRig::reference(), 12, &nodes, &mut [0; 79]).expect_err("80 bytes needed");
-        assert_eq!(error, WriteError::OutputTooShort { capacity: 79, needed: 80 });
+        let error = write(&StereoRig::reference(), 12, &nodes, &mut [0; 83]).expect_err("84 bytes needed");
+        assert_eq!(error, WriteError::OutputTooShort { capacity: 83, needed: 84 });
+    }
+
+    #[test]
+    fn an_agreement_is_stated_afterwards_and_read_again() {
+        let nodes = [NodeModel { position: Point2::default(), segments: &[] }];
+        let mut bytes = [0; 90];
+        write(&StereoRig::reference(), 12, &nodes, &mut bytes).expect("room enough");
+        assert_eq!(TopologicalDatabase::open(&bytes).expect("just written").self_agreement(), None);
+        state_self_agreement(&mut bytes, 0.625).expect("a share");
+        assert_eq!(TopologicalDatabase::open(&bytes).expect("its checksum follows").self_agreement(), Some(0.625));
+        for wrong in [0.0, 1.5, f32::NAN] {
+            assert_eq!(state_self_agreement(&mut bytes, wrong), Err(StateError::Agreement));
+        }
+        assert!(matches!(state_self_agreement(&mut bytes[..40], 0.5), Err(StateError::Open(_))));
     }
 
     #[test]

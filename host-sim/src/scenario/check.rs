@@ -133,7 +133,7 @@ fn check_localizer(localizer: &LocalizerSettings) -> Result<(), IllegalValue> {
         "the node lies in the middle; add one".to_owned()
     })?;
     within("localizer.verification.confidence", verification.confidence, 0.0..=100.0, "0.45 is the default")?;
-    within("localizer.verification.refined", verification.refined, 1..=256, "60 is the default")?;
+    within("localizer.verification.refined", verification.refined, 1..=256, "56 is the default")?;
     let finalists = verification.finalists;
     within("localizer.verification.finalists", finalists, 1..=verification.refined, "at most as many as are refined")?;
     let covered_px = pgh.max_distance_px * if pgh.signed { 2.0 } else { 1.0 };

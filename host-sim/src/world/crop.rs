@@ -25,10 +25,7 @@ pub fn crop(world: &WireframeWorld, rectangle: &Rectangle, name: String) -> Wire
     let Rectangle { min, max } = rectangle;
     let origin = format!("{}, cropped to {},{},{},{} m", world.origin, min.x, min.y, max.x, max.y);
     let edges = world.edges.iter().filter_map(|edge| {
-        let (start, end) = match cut_polygon(&[edge.start, edge.end], rectangle)[..] {
-            [start, end, ..] => (start, end),
-            _ => return None,
-        };
+        let [start, end] = cut_polygon(&[edge.start, edge.end], rectangle).try_into().ok()?;
         (start.distance(end) >= SHORTEST_M).then_some(Segment3 { start, end, ..*edge })
     });
     WireframeWorld {

@@ -16,7 +16,7 @@ use crate::matching::{Body, Work, run};
 use crate::math;
 
 /// Segments of a node that can be seen from near it at a heading; a node that shows more shows the first so many.
-pub(super) const VIEW_CAPACITY: usize = 512;
+pub(super) const VIEW_CAPACITY: usize = 384;
 /// Tolerance of the prediction apart from the pose \[px\]: lateral shift and the width of edges.
 const FIXED_TOLERANCE_PX: f32 = 6.0;
 /// Error of the model itself \[m\].
@@ -340,14 +340,12 @@ impl LaneImage {
     /// In which lanes the segment is in view, long enough and not near-horizontal.
     #[inline(always)]
     fn is_seen(&self, filter: &SegmentFilter) -> Lane<bool> {
-        let mut is_seen = [false; LANES];
-        for lane in 0..LANES {
+        core::array::from_fn(|lane| {
             let (width, height) = (magnitude(self.way[0][lane]), magnitude(self.way[1][lane]));
-            is_seen[lane] = self.is_inside[lane]
+            self.is_inside[lane]
                 & (self.length[lane] >= filter.min_length_px)
-                & (height >= filter.horizontal_slope * width);
-        }
-        is_seen
+                & (height >= filter.horizontal_slope * width)
+        })
     }
 }
 

@@ -27,7 +27,7 @@ impl VerificationConfig {
     /// The values that the study of the office settled on.
     #[must_use]
     pub const fn reference() -> Self {
-        Self { cells_per_side: 7, headings: 4, confidence: 0.45, refined: 60, finalists: 12 }
+        Self { cells_per_side: 7, headings: 4, confidence: 0.45, refined: 56, finalists: 12 }
     }
 
     /// Whether every parameter is in range.

@@ -18,12 +18,12 @@ use crate::localize::{
 /// An attempt that saw less than this in all looks was too poor to tell \[px\].
 const POOR_PX: i32 = 300;
 /// After the last look a lead of this part of the confidence asked for is enough.
-const LAST_CONFIDENCE: f32 = 0.15;
+const LAST_CONFIDENCE: f32 = 0.16;
 /// Agreement that an answer asks for, before the last look and after it, as a share of the map's agreement with itself:
 /// with less the robot is outside the map.
-const LEAST_AGREEMENTS: [f32; 2] = [0.85, 0.6];
+const LEAST_AGREEMENTS: [f32; 2] = [0.95, 0.75];
 /// The map's agreement with itself, where it was not measured: what a good calibration gives.
-const USUAL_AGREEMENT: f32 = 0.6;
+const USUAL_AGREEMENT: f32 = 0.5;
 /// Rivals less likely than this are not named.
 const LEAST_PROBABILITY: f32 = 0.01;
 
