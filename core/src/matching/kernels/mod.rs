@@ -3,7 +3,9 @@
 //! Several bodies, the same bits: integer sums do not depend on their order, and what is not written by hand is the same
 //! portable source compiled once for each set of instructions.
 
-#[cfg(any(test, not(target_arch = "x86_64")))]
+#[cfg(edgeloc_dsp)]
+mod cortex_m;
+#[cfg(any(test, not(any(target_arch = "x86_64", edgeloc_dsp))))]
 mod portable;
 #[cfg(target_arch = "x86_64")]
 mod x86_64;
@@ -28,9 +30,14 @@ pub(crate) trait Work {
     fn run<B: Body>(self, body: B) -> Self::Output;
 }
 
+/// Does `work` with the body that the machine is known to have when this is compiled.
 #[cfg(not(target_arch = "x86_64"))]
 pub(crate) fn run<W: Work>(work: W) -> W::Output {
-    work.run(portable::Portable)
+    #[cfg(edgeloc_dsp)]
+    let body = cortex_m::Smlad;
+    #[cfg(not(edgeloc_dsp))]
+    let body = portable::Portable;
+    work.run(body)
 }
 #[cfg(target_arch = "x86_64")]
 pub(crate) use x86_64::run;
