@@ -6,11 +6,18 @@ use crate::steps::THUMB_TARGETS;
 use crate::summary::Outcome;
 use crate::workspace::{Workspace, run};
 
-/// Programs that are also the names of the Debian packages that bring them: the emulator, and the browser that tests
-/// the editor's page.
-const PROGRAMS: [&str; 2] = [EMULATOR, "chromium"];
+/// A program and the Debian package that brings it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Program {
+    name: &'static str,
+    package: &'static str,
+}
 
-const EMULATOR: &str = "qemu-system-arm";
+/// Emulates the Cortex-M boards.
+pub(crate) const ARM_EMULATOR: Program = Program { name: "qemu-system-arm", package: "qemu-system-arm" };
+
+/// All programs that steps need; the browser tests the editor's page.
+const PROGRAMS: [Program; 2] = [ARM_EMULATOR, Program { name: "chromium", package: "chromium" }];
 
 /// The one command, before the names of packages.
 const INSTALL: &str = "apt-get install --no-install-recommends";
@@ -20,7 +27,8 @@ pub(crate) fn run_setup(workspace: &Workspace) -> Outcome {
     if let Err(reason) = add_targets(workspace) {
         return Outcome::Failed(reason);
     }
-    let missing = PROGRAMS.into_iter().filter(|program| !is_present(program)).collect::<Vec<_>>().join(" ");
+    let missing = PROGRAMS.into_iter().filter(|program| !is_present(program.name));
+    let missing = missing.map(|program| program.package).collect::<Vec<_>>().join(" ");
     if missing.is_empty() {
         return Outcome::Passed;
     }
@@ -33,9 +41,9 @@ pub(crate) fn run_setup(workspace: &Workspace) -> Outcome {
     }
 }
 
-/// Why the emulator can't be used, with the remedy; `None` when it is there.
-pub(crate) fn missing_emulator() -> Option<String> {
-    (!is_present(EMULATOR)).then(|| format!("{EMULATOR} is missing; install it: sudo {INSTALL} {EMULATOR}"))
+/// Why a program can't be used, with the remedy; `None` when it is there.
+pub(crate) fn missing(Program { name, package }: Program) -> Option<String> {
+    (!is_present(name)).then(|| format!("{name} is missing; install it: sudo {INSTALL} {package}"))
 }
 
 /// Adds the targets that are not installed yet; without a missing one the network is not touched.

@@ -4,7 +4,7 @@ use std::process::Command;
 
 use crate::setup;
 use crate::summary::Outcome;
-use crate::workspace::{Workspace, run_all};
+use crate::workspace::{Workspace, run_all, run_together};
 
 /// One named check.
 #[derive(Debug)]
@@ -38,14 +38,14 @@ pub(crate) static STEPS: &[Step] = &[
     full("buildings", "the data of real buildings is there, so that their tests did run", buildings),
     full("benches", "every benchmark runs once", benches),
     full("thumb", "the library builds for Cortex-M without std", thumb),
-    full("qemu", "the localizer on an emulated Cortex-M7 agrees with the host bit for bit", qemu),
+    full("qemu", "kernels and localizer on emulated Cortex-M4, M7 and M33 agree with the host bit for bit", qemu),
 ];
 
 /// Targets the library is built for to show that it needs no `std`.
 pub(crate) const THUMB_TARGETS: [&str; 2] = ["thumbv7em-none-eabihf", "thumbv8m.main-none-eabihf"];
 
-/// The board that QEMU emulates; its folder holds its target and its runner.
-const QEMU_BOARD: &str = "boards/qemu-mps2-an500";
+/// The boards that QEMU emulates; each folder holds the board's target and its runner.
+const QEMU_BOARDS: [&str; 3] = ["boards/qemu-mps2-an386", "boards/qemu-mps2-an500", "boards/qemu-mps2-an505"];
 
 const fn full(name: &'static str, about: &'static str, run: fn(&Workspace) -> Outcome) -> Step {
     Step { name, about, is_in_full: true, is_quick: false, run }
@@ -60,10 +60,9 @@ fn format(workspace: &Workspace) -> Outcome {
 }
 
 fn lint(workspace: &Workspace) -> Outcome {
-    run_all([
-        workspace.cargo("", "clippy --locked --workspace --all-targets -- -D warnings"),
-        workspace.cargo(QEMU_BOARD, "clippy --locked -- -D warnings"),
-    ])
+    let ours = workspace.cargo("", "clippy --locked --workspace --all-targets -- -D warnings");
+    let boards = QEMU_BOARDS.map(|board| workspace.cargo(board, "clippy --locked -- -D warnings"));
+    run_all([ours].into_iter().chain(boards))
 }
 
 fn docs(workspace: &Workspace) -> Outcome {
@@ -73,7 +72,9 @@ fn docs(workspace: &Workspace) -> Outcome {
     };
     run_all([
         strict(workspace.cargo("", "doc --locked --workspace --no-deps")),
-        strict(workspace.cargo(QEMU_BOARD, "doc --locked --workspace --no-deps")),
+        strict(
+            workspace.cargo(QEMU_BOARDS[0], "doc --locked --no-deps --package edgeloc-firmware --package edgeloc-qemu"),
+        ),
     ])
 }
 
@@ -112,12 +113,18 @@ fn thumb(workspace: &Workspace) -> Outcome {
     )
 }
 
-/// The board's own cargo configuration names its target and its runner, which ends the emulator after a time limit.
+/// Each board's own cargo configuration names its target and its runner, which ends the emulator after a time limit.
+/// Emulators are slow and have one thread: once everything is built, they run side by side.
 fn qemu(workspace: &Workspace) -> Outcome {
-    if let Some(reason) = setup::missing_emulator() {
+    if let Some(reason) = setup::missing(setup::ARM_EMULATOR) {
         return Outcome::Skipped(reason);
     }
-    run_all([workspace.cargo(QEMU_BOARD, "run --locked --release")])
+    match run_all(QEMU_BOARDS.map(|board| workspace.cargo(board, "build --locked --release"))) {
+        Outcome::Passed => {
+            run_together(QEMU_BOARDS.map(|board| workspace.cargo(board, "run --quiet --locked --release")))
+        }
+        failed => failed,
+    }
 }
 
 #[cfg(test)]

@@ -66,16 +66,48 @@ pub(crate) fn run_all(commands: impl IntoIterator<Item = Command>) -> Outcome {
     if failures.is_empty() { Outcome::Passed } else { Outcome::Failed(failures.join("; ")) }
 }
 
+/// Runs all commands at the same time, prints what each said once it has ended, and names the ones that failed.
+pub(crate) fn run_together<const N: usize>(commands: [Command; N]) -> Outcome {
+    let run = |mut command: Command| (announcement(&command), command.output());
+    let ended = std::thread::scope(|scope| {
+        let running = commands.map(|command| scope.spawn(move || run(command)));
+        running.map(|thread| thread.join())
+    });
+    let mut failures = Vec::new();
+    for ended in ended {
+        let Ok((line, output)) = ended else {
+            failures.push("a command could not be awaited".to_owned());
+            continue;
+        };
+        println!("    {line}");
+        match output {
+            Ok(output) => {
+                print!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+                if !output.status.success() {
+                    failures.push(format!("`{line}`: {}", output.status));
+                }
+            }
+            Err(error) => failures.push(format!("`{line}` can't be started: {error}")),
+        }
+    }
+    if failures.is_empty() { Outcome::Passed } else { Outcome::Failed(failures.join("; ")) }
+}
+
 /// Runs one command with its output passed through; the error says which command and how it ended.
 pub(crate) fn run(mut command: Command) -> Result<(), String> {
+    println!("    {}", announcement(&command));
     let line = command_line(&command);
-    let folder = command.get_current_dir().unwrap_or(Path::new("."));
-    println!("    {line}   (in {})", folder.display());
     match command.status() {
         Ok(status) if status.success() => Ok(()),
         Ok(status) => Err(format!("`{line}`: {status}")),
         Err(error) => Err(format!("`{line}` can't be started: {error}")),
     }
+}
+
+/// The command as one would type it, and where.
+fn announcement(command: &Command) -> String {
+    let folder = command.get_current_dir().unwrap_or(Path::new("."));
+    format!("{}   (in {})", command_line(command), folder.display())
 }
 
 /// The command as one would type it, without the folder of its program.
@@ -110,6 +142,16 @@ mod tests {
     #[test]
     fn commands_that_succeed_pass() {
         assert_eq!(run_all([shell("true"), shell("exit 0")]), Outcome::Passed);
+        assert_eq!(run_together([shell("true"), shell("exit 0")]), Outcome::Passed);
+    }
+
+    #[test]
+    fn commands_run_together_are_all_awaited_and_every_failure_is_named() {
+        let outcome = run_together([shell("sleep 0.05; exit 3"), shell("exit 4"), Command::new("/no/such/tool")]);
+        let Outcome::Failed(reason) = outcome else { panic!("{outcome:?} hides three failures") };
+        for part in ["sleep 0.05; exit 3   (in .)`: exit status: 3", "exit status: 4", "can't be started"] {
+            assert!(reason.contains(part), "{reason}");
+        }
     }
 
     #[test]
