@@ -6,8 +6,9 @@
 //!
 //! A scene's rows are sparse, a view's histograms dense and transposed in panels of [`LANES`] lines: each non-zero pair
 //! of scene bins meets [`LANES`] view lines at once, and only the best coefficient of each row is kept. On x86-64 the
-//! best of SSE2, AVX2 and AVX-512 that the machine has is taken at run time, for the building of histograms as well; a
-//! Cortex-M with the DSP extension has a body of its own, every other machine portable code. All give the same bits.
+//! best of SSE2, AVX2 and AVX-512 that the machine has is taken at run time, for the building of histograms as well; NEON,
+//! WebAssembly's vectors and the DSP extension of Cortex-M have bodies that are taken when compiling, all else runs
+//! portable code. All give the same bits.
 
 mod bhattacharyya;
 mod kernels;
