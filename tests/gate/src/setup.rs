@@ -2,7 +2,7 @@
 
 use std::process::{Command, Stdio};
 
-use crate::steps::THUMB_TARGETS;
+use crate::steps::{HOSTED_TARGETS, THUMB_TARGETS};
 use crate::summary::Outcome;
 use crate::workspace::{Workspace, run};
 
@@ -16,8 +16,17 @@ pub(crate) struct Program {
 /// Emulates the Cortex-M boards.
 pub(crate) const ARM_EMULATOR: Program = Program { name: "qemu-system-arm", package: "qemu-system-arm" };
 
-/// All programs that steps need; the browser tests the editor's page.
-const PROGRAMS: [Program; 2] = [ARM_EMULATOR, Program { name: "chromium", package: "chromium" }];
+/// Runs programs of a 64-bit Arm.
+pub(crate) const AARCH64_EMULATOR: Program = Program { name: "qemu-aarch64", package: "qemu-user" };
+
+/// Runs WebAssembly.
+pub(crate) const WASM_ENGINE: Program = Program { name: "node", package: "nodejs" };
+
+/// Tests the editor's page.
+const BROWSER: Program = Program { name: "chromium", package: "chromium" };
+
+/// All programs that steps need.
+const PROGRAMS: [Program; 4] = [ARM_EMULATOR, AARCH64_EMULATOR, WASM_ENGINE, BROWSER];
 
 /// The one command, before the names of packages.
 const INSTALL: &str = "apt-get install --no-install-recommends";
@@ -62,7 +71,8 @@ fn add_targets(workspace: &Workspace) -> Result<(), String> {
 
 /// The targets that a list of installed ones, one a line, lacks.
 fn missing_targets(installed: &str) -> Vec<&'static str> {
-    THUMB_TARGETS.into_iter().filter(|target| installed.lines().all(|line| line.trim() != *target)).collect()
+    let targets = THUMB_TARGETS.into_iter().chain(HOSTED_TARGETS);
+    targets.filter(|target| installed.lines().all(|line| line.trim() != *target)).collect()
 }
 
 fn install(workspace: &Workspace, packages: &str) -> Result<(), String> {
@@ -91,9 +101,10 @@ mod tests {
 
     #[test]
     fn only_targets_not_yet_installed_are_added() {
-        assert_eq!(missing_targets(""), THUMB_TARGETS);
-        assert_eq!(missing_targets("x86_64-unknown-linux-gnu\nthumbv7em-none-eabihf\n"), [THUMB_TARGETS[1]]);
-        assert!(missing_targets(&THUMB_TARGETS.join("\n")).is_empty());
+        let all = [THUMB_TARGETS, HOSTED_TARGETS].concat();
+        assert_eq!(missing_targets(""), all);
+        assert_eq!(missing_targets(&format!("x86_64-unknown-linux-gnu\n{}\n", all[0])), all[1..]);
+        assert!(missing_targets(&all.join("\n")).is_empty());
     }
 
     #[test]

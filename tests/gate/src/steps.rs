@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use crate::setup;
+use crate::setup::{self, Program};
 use crate::summary::Outcome;
 use crate::workspace::{Workspace, run_all, run_together};
 
@@ -39,6 +39,8 @@ pub(crate) static STEPS: &[Step] = &[
     full("benches", "every benchmark runs once", benches),
     full("thumb", "the library builds for Cortex-M without std", thumb),
     full("qemu", "kernels and localizer on emulated Cortex-M4, M7 and M33 agree with the host bit for bit", qemu),
+    full("aarch64", "the same on an emulated 64-bit Arm", aarch64),
+    full("wasm", "the same in WebAssembly", wasm),
 ];
 
 /// Targets the library is built for to show that it needs no `std`.
@@ -46,6 +48,13 @@ pub(crate) const THUMB_TARGETS: [&str; 2] = ["thumbv7em-none-eabihf", "thumbv8m.
 
 /// The boards that QEMU emulates; each folder holds the board's target and its runner.
 const QEMU_BOARDS: [&str; 3] = ["boards/qemu-mps2-an386", "boards/qemu-mps2-an500", "boards/qemu-mps2-an505"];
+
+/// A 64-bit Arm under Linux, and WebAssembly: their folders hold targets and runners too.
+const AARCH64_BOARD: &str = "boards/linux";
+const WASM_BOARD: &str = "boards/wasm";
+
+/// The targets of those two.
+pub(crate) const HOSTED_TARGETS: [&str; 2] = ["aarch64-unknown-linux-musl", "wasm32-unknown-unknown"];
 
 const fn full(name: &'static str, about: &'static str, run: fn(&Workspace) -> Outcome) -> Step {
     Step { name, about, is_in_full: true, is_quick: false, run }
@@ -61,8 +70,8 @@ fn format(workspace: &Workspace) -> Outcome {
 
 fn lint(workspace: &Workspace) -> Outcome {
     let ours = workspace.cargo("", "clippy --locked --workspace --all-targets -- -D warnings");
-    let boards = QEMU_BOARDS.map(|board| workspace.cargo(board, "clippy --locked -- -D warnings"));
-    run_all([ours].into_iter().chain(boards))
+    let boards = QEMU_BOARDS.into_iter().chain([AARCH64_BOARD, WASM_BOARD]);
+    run_all([ours].into_iter().chain(boards.map(|board| workspace.cargo(board, "clippy --locked -- -D warnings"))))
 }
 
 fn docs(workspace: &Workspace) -> Outcome {
@@ -124,6 +133,21 @@ fn qemu(workspace: &Workspace) -> Outcome {
             run_together(QEMU_BOARDS.map(|board| workspace.cargo(board, "run --quiet --locked --release")))
         }
         failed => failed,
+    }
+}
+
+fn aarch64(workspace: &Workspace) -> Outcome {
+    run_board(workspace, AARCH64_BOARD, setup::AARCH64_EMULATOR)
+}
+
+fn wasm(workspace: &Workspace) -> Outcome {
+    run_board(workspace, WASM_BOARD, setup::WASM_ENGINE)
+}
+
+fn run_board(workspace: &Workspace, board: &str, runner: Program) -> Outcome {
+    match setup::missing(runner) {
+        Some(reason) => Outcome::Skipped(reason),
+        None => run_all([workspace.cargo(board, "run --locked --release")]),
     }
 }
 
