@@ -20,7 +20,7 @@ impl Draw {
 
     /// A number below `end`, at most 2^32.
     pub(crate) const fn below(&mut self, end: u64) -> u64 {
-        (self.bits() >> 32) * end >> 32
+        ((self.bits() >> 32) * end) >> 32
     }
 
     /// A multiple of 1/16 from 0 to below `end`, so that every machine has it exactly.

@@ -1,7 +1,7 @@
 //! The golden vectors, as every board carries them.
 
 /// The map; a board may place a copy of it in a memory of its choice.
-pub const MAP: [u8; include_bytes!("../../../tests/fixtures/golden/office.map").len()] =
+pub static MAP: [u8; include_bytes!("../../../tests/fixtures/golden/office.map").len()] =
     *include_bytes!("../../../tests/fixtures/golden/office.map");
 
 /// What robots saw.

@@ -6,6 +6,7 @@
 #![no_std]
 
 mod acceptance;
+pub mod budgets;
 mod comparison;
 mod draw;
 pub mod golden;

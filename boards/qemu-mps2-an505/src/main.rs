@@ -4,6 +4,7 @@
 
 use cortex_m_rt::{ExceptionFrame, entry, exception};
 use edgeloc_firmware::golden;
+use edgeloc_qemu::Timer;
 
 /// The map, in the section that the linker puts into the big memory.
 // SAFETY: the section's name is ours alone, and it holds nothing but constant bytes.
@@ -12,7 +13,9 @@ static MAP: [u8; golden::MAP.len()] = golden::MAP;
 
 #[entry]
 fn main() -> ! {
-    edgeloc_qemu::run(&MAP)
+    // SAFETY: the board's first timer lies there, and this is its only user.
+    let timer = unsafe { Timer::start(0x5000_0000, 20) };
+    edgeloc_qemu::run(&MAP, timer)
 }
 
 // SAFETY: the handler touches no state of the interrupted program.
