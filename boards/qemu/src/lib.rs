@@ -32,6 +32,7 @@ impl Timer {
     ///
     /// # Safety
     /// The board has such a timer there, and nothing else uses it.
+    // SAFETY: only a board knows its timers; what it has to promise is said above.
     #[must_use]
     pub unsafe fn start(address: usize, megahertz: u64) -> Self {
         let registers = address as *mut u32;
