@@ -32,8 +32,9 @@
 //! # Same bits everywhere
 //!
 //! Histograms, coefficients, scores and margins are integers; float arithmetic is left to projection and to the
-//! rounding of segments, where it is plain IEEE single precision in source order with `libm` for the functions. A trial therefore gives the
-//! identical decision and scores on every machine; the gate proves it for x86-64 and an emulated Cortex-M7.
+//! rounding of segments, where it is plain IEEE single precision in source order with `libm` for the functions. A trial
+//! therefore gives the identical decision and scores on every machine; the gate proves it for x86-64, 64-bit Arm,
+//! Cortex-M4, M7 and M33 (emulated) and WebAssembly.
 #![no_std]
 
 #[cfg(test)]

@@ -30,7 +30,11 @@ fn mismatches(golden: &Golden) -> Vec<(String, String)> {
 fn the_committed_vectors_are_what_is_made_today() {
     let (made, committed) = (&*MADE, &*COMMITTED);
     let remedy = "if that is meant: EDGELOC_BLESS=1 cargo test -p edgeloc-tests --test golden, and commit the change";
-    for (old, new) in [(&committed.expected, &made.expected), (&committed.learned, &made.learned)] {
+    for (old, new) in [
+        (&committed.expected, &made.expected),
+        (&committed.kernels, &made.kernels),
+        (&committed.learned, &made.learned),
+    ] {
         if let Some((old, new)) = old.lines().zip(new.lines()).find(|(old, new)| old != new) {
             panic!("the golden answers changed, first\n  from {old}\n  to   {new}\n{remedy}");
         }

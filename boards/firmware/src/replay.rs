@@ -9,6 +9,7 @@ use edgeloc::database::{OpenError, TopologicalDatabase};
 use edgeloc::geometry::{CapacityError, Scene, SceneBuffer};
 use edgeloc::localize::{Decision, HeadingPrior, Localizer, Look, ObserveError};
 
+use crate::comparison::{Comparison, Mismatch};
 use crate::looks::{GoldenLook, LooksError, LooksReader};
 
 /// Segments of a look that the firmware has room for; a look with more is refused with an error.
@@ -33,15 +34,6 @@ pub struct Counts {
     pub mismatches: u32,
 }
 
-/// A line that is not as expected; an empty one is missing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Mismatch<'a> {
-    /// What the host got.
-    pub expected: &'a str,
-    /// What this machine got.
-    pub actual: &'a str,
-}
-
 /// Replays `looks` on `map` and holds every line against `expected`; each that differs goes to `on_mismatch`.
 ///
 /// # Errors
@@ -51,20 +43,11 @@ pub fn compare(
     looks: &[u8],
     expected: &str,
     memory: &mut [u64],
-    mut on_mismatch: impl FnMut(Mismatch<'_>),
+    on_mismatch: impl FnMut(Mismatch<'_>),
 ) -> Result<Counts, ReplayError> {
-    let mut expected_lines = expected.lines();
-    let mut mismatches = 0;
-    let mut differ = |expected: &str, actual: &str| {
-        if expected != actual {
-            mismatches += 1;
-            on_mismatch(Mismatch { expected, actual });
-        }
-    };
-    let counts = replay(map, looks, memory, |line| differ(expected_lines.next().unwrap_or_default(), line))?;
-    for left_over in expected_lines {
-        differ(left_over, "");
-    }
+    let mut comparison = Comparison::new(expected, on_mismatch);
+    let counts = replay(map, looks, memory, |line| comparison.line(line))?;
+    let (_, mismatches) = comparison.finish();
     Ok(Counts { mismatches, ..counts })
 }
 

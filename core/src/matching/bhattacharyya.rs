@@ -15,9 +15,9 @@ pub struct BinPair {
     pub roots: [i16; 2],
 }
 
-/// The same pair of bins of every line of a panel.
+/// The same pair of bins of every line of a panel, aligned as working memory is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, FromBytes, IntoBytes, Immutable)]
-#[repr(C)]
+#[repr(C, align(8))]
 pub struct PanelRow {
     /// Square roots in Q15 of two bins, for each line.
     pub roots: [[i16; 2]; LANES],
@@ -144,5 +144,29 @@ impl<'m> Panel<'m> {
     #[inline(always)]
     pub(super) fn best_coefficient(&self, body: impl Body, row: &[BinPair]) -> i32 {
         body.best_coefficient(row, self.rows)
+    }
+}
+
+/// The best coefficient in Q30 of a scene's `row` with a line of the panel `rows`, 0 if none is positive: what
+/// [`score_view`](super::score_view) does for each row of a scene and each panel of a view, by itself.
+///
+/// An index past the panel counts for nothing; sums of what is not a histogram wrap.
+#[must_use]
+pub fn best_coefficient(row: &[BinPair], rows: &[PanelRow]) -> i32 {
+    kernels::run(Coefficient { row, rows })
+}
+
+/// [`best_coefficient`] as work for any machine.
+struct Coefficient<'a> {
+    row: &'a [BinPair],
+    rows: &'a [PanelRow],
+}
+
+impl Work for Coefficient<'_> {
+    type Output = i32;
+
+    #[inline(always)]
+    fn run<B: Body>(self, body: B) -> i32 {
+        body.best_coefficient(self.row, self.rows)
     }
 }

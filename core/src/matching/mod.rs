@@ -6,14 +6,15 @@
 //!
 //! A scene's rows are sparse, a view's histograms dense and transposed in panels of [`LANES`] lines: each non-zero pair
 //! of scene bins meets [`LANES`] view lines at once, and only the best coefficient of each row is kept. On x86-64 the
-//! best of SSE2, AVX2 and AVX-512 that the machine has is taken at run time, for the building of histograms as well; all
-//! give the same bits.
+//! best of SSE2, AVX2 and AVX-512 that the machine has is taken at run time, for the building of histograms as well; NEON,
+//! WebAssembly's vectors and the DSP extension of Cortex-M have bodies that are taken when compiling, all else runs
+//! portable code. All give the same bits.
 
 mod bhattacharyya;
 mod kernels;
 mod view_score;
 
-pub use bhattacharyya::{BinPair, Panel, PanelRow, RootRows};
+pub use bhattacharyya::{BinPair, Panel, PanelRow, RootRows, best_coefficient};
 pub use kernels::LANES;
 pub(crate) use kernels::{Body, Work, run};
 pub use view_score::{ViewScore, score_view};

@@ -9,9 +9,17 @@ use crate::steps::Step;
 pub(crate) enum Request {
     /// Print the help.
     Help,
-    /// Run these steps, in the gate's order.
-    Run(Vec<&'static Step>),
+    /// Run steps.
+    Run {
+        /// Which, in the gate's order.
+        steps: Vec<&'static Step>,
+        /// Whether what is counted becomes the budget.
+        is_blessing: bool,
+    },
 }
+
+/// Makes budgets of what is counted.
+const BLESS: &str = "--bless";
 
 /// A word of the command line that is neither a step nor an option.
 #[derive(Debug, PartialEq, Eq)]
@@ -31,22 +39,25 @@ pub(crate) fn parse(arguments: &[String], steps: &'static [Step]) -> Result<Requ
     if arguments.iter().any(|word| word == "--help" || word == "-h" || word == "help") {
         return Ok(Request::Help);
     }
-    let unknown = |word: &&String| *word != "quick" && steps.iter().all(|step| step.name != **word);
+    let is_blessing = arguments.iter().any(|word| word == BLESS);
+    let arguments: Vec<&String> = arguments.iter().filter(|word| *word != BLESS).collect();
+    let unknown = |word: &&&String| **word != "quick" && steps.iter().all(|step| step.name != **word);
     if let Some(word) = arguments.iter().find(unknown) {
-        return Err(UnknownStep { word: word.clone(), known: steps.iter().map(|step| step.name).collect() });
+        return Err(UnknownStep { word: (*word).clone(), known: steps.iter().map(|step| step.name).collect() });
     }
-    let is_named = |name: &str| arguments.iter().any(|word| word == name);
+    let is_named = |name: &str| arguments.iter().any(|word| *word == name);
     let is_chosen = |step: &&Step| {
         if arguments.is_empty() { step.is_in_full } else { is_named(step.name) || (is_named("quick") && step.is_quick) }
     };
-    Ok(Request::Run(steps.iter().filter(is_chosen).collect()))
+    Ok(Request::Run { steps: steps.iter().filter(is_chosen).collect(), is_blessing })
 }
 
 /// The help: what the gate does, its steps and examples.
 pub(crate) fn help(steps: &[Step]) -> String {
     let mut text = String::from(
         "Checks everything, or the steps named.\n\n\
-         Usage: cargo gate [quick | STEP...]\n\n\
+         Usage: cargo gate [quick | STEP...] [--bless]\n\n\
+         --bless makes the instruction budgets of boards what they take today.\n\n\
          Steps (* also in quick, + only in quick or by name):\n",
     );
     for step in steps {
@@ -84,7 +95,7 @@ mod tests {
     fn chosen(words: &[&str]) -> Vec<&'static str> {
         let words: Vec<String> = words.iter().map(|&word| word.to_owned()).collect();
         match parse(&words, SAMPLE).expect("the words are known") {
-            Request::Run(steps) => steps.iter().map(|step| step.name).collect(),
+            Request::Run { steps, .. } => steps.iter().map(|step| step.name).collect(),
             Request::Help => panic!("no help was asked for"),
         }
     }
@@ -92,6 +103,14 @@ mod tests {
     #[test]
     fn no_argument_means_the_full_gate() {
         assert_eq!(chosen(&[]), ["setup", "lint"]);
+    }
+
+    #[test]
+    fn blessing_is_no_step() {
+        assert_eq!(chosen(&["--bless"]), ["setup", "lint"]);
+        let words = ["--bless".to_owned(), "lint".to_owned()];
+        assert!(matches!(parse(&words, SAMPLE), Ok(Request::Run { is_blessing: true, .. })));
+        assert!(matches!(parse(&words[1..], SAMPLE), Ok(Request::Run { is_blessing: false, .. })));
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! passed, failed and was skipped. It fails when a step failed, and under `CI=true` also when one was skipped.
 
 mod arguments;
+mod budgets;
 mod setup;
 mod steps;
 mod summary;
@@ -25,7 +26,7 @@ fn main() -> ExitCode {
             print!("{}", arguments::help(STEPS));
             ExitCode::SUCCESS
         }
-        Ok(Request::Run(chosen)) => run(&chosen),
+        Ok(Request::Run { steps, is_blessing }) => run(&steps, is_blessing),
         Err(error) => {
             eprintln!("error: {error}");
             ExitCode::from(2)
@@ -34,8 +35,8 @@ fn main() -> ExitCode {
 }
 
 /// Runs the chosen steps one after the other and prints the summary.
-fn run(chosen: &[&'static Step]) -> ExitCode {
-    let workspace = match Workspace::find() {
+fn run(chosen: &[&'static Step], is_blessing: bool) -> ExitCode {
+    let workspace = match Workspace::find(is_blessing) {
         Ok(workspace) => workspace,
         Err(error) => {
             eprintln!("error: {error}");

@@ -2,15 +2,31 @@
 
 use std::process::{Command, Stdio};
 
-use crate::steps::THUMB_TARGETS;
+use crate::steps::{HOSTED_TARGETS, THUMB_TARGETS};
 use crate::summary::Outcome;
 use crate::workspace::{Workspace, run};
 
-/// Programs that are also the names of the Debian packages that bring them: the emulator, and the browser that tests
-/// the editor's page.
-const PROGRAMS: [&str; 2] = [EMULATOR, "chromium"];
+/// A program and the Debian package that brings it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Program {
+    name: &'static str,
+    package: &'static str,
+}
 
-const EMULATOR: &str = "qemu-system-arm";
+/// Emulates the Cortex-M boards.
+pub(crate) const ARM_EMULATOR: Program = Program { name: "qemu-system-arm", package: "qemu-system-arm" };
+
+/// Runs programs of a 64-bit Arm.
+pub(crate) const AARCH64_EMULATOR: Program = Program { name: "qemu-aarch64", package: "qemu-user" };
+
+/// Runs WebAssembly.
+pub(crate) const WASM_ENGINE: Program = Program { name: "node", package: "nodejs" };
+
+/// Tests the editor's page.
+const BROWSER: Program = Program { name: "chromium", package: "chromium" };
+
+/// All programs that steps need.
+const PROGRAMS: [Program; 4] = [ARM_EMULATOR, AARCH64_EMULATOR, WASM_ENGINE, BROWSER];
 
 /// The one command, before the names of packages.
 const INSTALL: &str = "apt-get install --no-install-recommends";
@@ -20,7 +36,8 @@ pub(crate) fn run_setup(workspace: &Workspace) -> Outcome {
     if let Err(reason) = add_targets(workspace) {
         return Outcome::Failed(reason);
     }
-    let missing = PROGRAMS.into_iter().filter(|program| !is_present(program)).collect::<Vec<_>>().join(" ");
+    let missing = PROGRAMS.into_iter().filter(|program| !is_present(program.name));
+    let missing = missing.map(|program| program.package).collect::<Vec<_>>().join(" ");
     if missing.is_empty() {
         return Outcome::Passed;
     }
@@ -33,9 +50,9 @@ pub(crate) fn run_setup(workspace: &Workspace) -> Outcome {
     }
 }
 
-/// Why the emulator can't be used, with the remedy; `None` when it is there.
-pub(crate) fn missing_emulator() -> Option<String> {
-    (!is_present(EMULATOR)).then(|| format!("{EMULATOR} is missing; install it: sudo {INSTALL} {EMULATOR}"))
+/// Why a program can't be used, with the remedy; `None` when it is there.
+pub(crate) fn missing(Program { name, package }: Program) -> Option<String> {
+    (!is_present(name)).then(|| format!("{name} is missing; install it: sudo {INSTALL} {package}"))
 }
 
 /// Adds the targets that are not installed yet; without a missing one the network is not touched.
@@ -54,7 +71,8 @@ fn add_targets(workspace: &Workspace) -> Result<(), String> {
 
 /// The targets that a list of installed ones, one a line, lacks.
 fn missing_targets(installed: &str) -> Vec<&'static str> {
-    THUMB_TARGETS.into_iter().filter(|target| installed.lines().all(|line| line.trim() != *target)).collect()
+    let targets = THUMB_TARGETS.into_iter().chain(HOSTED_TARGETS);
+    targets.filter(|target| installed.lines().all(|line| line.trim() != *target)).collect()
 }
 
 fn install(workspace: &Workspace, packages: &str) -> Result<(), String> {
@@ -83,9 +101,10 @@ mod tests {
 
     #[test]
     fn only_targets_not_yet_installed_are_added() {
-        assert_eq!(missing_targets(""), THUMB_TARGETS);
-        assert_eq!(missing_targets("x86_64-unknown-linux-gnu\nthumbv7em-none-eabihf\n"), [THUMB_TARGETS[1]]);
-        assert!(missing_targets(&THUMB_TARGETS.join("\n")).is_empty());
+        let all = [THUMB_TARGETS, HOSTED_TARGETS].concat();
+        assert_eq!(missing_targets(""), all);
+        assert_eq!(missing_targets(&format!("x86_64-unknown-linux-gnu\n{}\n", all[0])), all[1..]);
+        assert!(missing_targets(&all.join("\n")).is_empty());
     }
 
     #[test]

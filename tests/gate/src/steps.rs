@@ -2,9 +2,10 @@
 
 use std::process::Command;
 
-use crate::setup;
+use crate::budgets::{self, Budgets, Counts};
+use crate::setup::{self, Program};
 use crate::summary::Outcome;
-use crate::workspace::{Workspace, run_all};
+use crate::workspace::{Workspace, run_all, run_together};
 
 /// One named check.
 #[derive(Debug)]
@@ -38,14 +39,26 @@ pub(crate) static STEPS: &[Step] = &[
     full("buildings", "the data of real buildings is there, so that their tests did run", buildings),
     full("benches", "every benchmark runs once", benches),
     full("thumb", "the library builds for Cortex-M without std", thumb),
-    full("qemu", "the localizer on an emulated Cortex-M7 agrees with the host bit for bit", qemu),
+    full("qemu", "kernels and localizer on emulated Cortex-M4, M7 and M33 give the host's bits, within budget", qemu),
+    full("aarch64", "the same on an emulated 64-bit Arm", aarch64),
+    full("wasm", "the same in WebAssembly", wasm),
 ];
 
 /// Targets the library is built for to show that it needs no `std`.
 pub(crate) const THUMB_TARGETS: [&str; 2] = ["thumbv7em-none-eabihf", "thumbv8m.main-none-eabihf"];
 
-/// The board that QEMU emulates; its folder holds its target and its runner.
-const QEMU_BOARD: &str = "boards/qemu-mps2-an500";
+/// The boards that QEMU emulates; each folder holds the board's target and its runner.
+const QEMU_BOARDS: [&str; 3] = ["boards/qemu-mps2-an386", "boards/qemu-mps2-an500", "boards/qemu-mps2-an505"];
+
+/// What the boards may cost.
+const BUDGETS: &str = "boards/budgets.toml";
+
+/// A 64-bit Arm under Linux, and WebAssembly: their folders hold targets and runners too.
+const AARCH64_BOARD: &str = "boards/linux";
+const WASM_BOARD: &str = "boards/wasm";
+
+/// The targets of those two.
+pub(crate) const HOSTED_TARGETS: [&str; 2] = ["aarch64-unknown-linux-musl", "wasm32-unknown-unknown"];
 
 const fn full(name: &'static str, about: &'static str, run: fn(&Workspace) -> Outcome) -> Step {
     Step { name, about, is_in_full: true, is_quick: false, run }
@@ -60,10 +73,9 @@ fn format(workspace: &Workspace) -> Outcome {
 }
 
 fn lint(workspace: &Workspace) -> Outcome {
-    run_all([
-        workspace.cargo("", "clippy --locked --workspace --all-targets -- -D warnings"),
-        workspace.cargo(QEMU_BOARD, "clippy --locked -- -D warnings"),
-    ])
+    let ours = workspace.cargo("", "clippy --locked --workspace --all-targets -- -D warnings");
+    let boards = QEMU_BOARDS.into_iter().chain([AARCH64_BOARD, WASM_BOARD]);
+    run_all([ours].into_iter().chain(boards.map(|board| workspace.cargo(board, "clippy --locked -- -D warnings"))))
 }
 
 fn docs(workspace: &Workspace) -> Outcome {
@@ -73,7 +85,9 @@ fn docs(workspace: &Workspace) -> Outcome {
     };
     run_all([
         strict(workspace.cargo("", "doc --locked --workspace --no-deps")),
-        strict(workspace.cargo(QEMU_BOARD, "doc --locked --workspace --no-deps")),
+        strict(
+            workspace.cargo(QEMU_BOARDS[0], "doc --locked --no-deps --package edgeloc-firmware --package edgeloc-qemu"),
+        ),
     ])
 }
 
@@ -112,12 +126,57 @@ fn thumb(workspace: &Workspace) -> Outcome {
     )
 }
 
-/// The board's own cargo configuration names its target and its runner, which ends the emulator after a time limit.
+/// Each board's own cargo configuration names its target and its runner, which ends the emulator after a time limit.
+/// Emulators are slow and have one thread: once everything is built, they run side by side.
 fn qemu(workspace: &Workspace) -> Outcome {
-    if let Some(reason) = setup::missing_emulator() {
+    if let Some(reason) = setup::missing(setup::ARM_EMULATOR) {
         return Outcome::Skipped(reason);
     }
-    run_all([workspace.cargo(QEMU_BOARD, "run --locked --release")])
+    let build = run_all(QEMU_BOARDS.map(|board| workspace.cargo(board, "build --locked --release")));
+    if build != Outcome::Passed {
+        return build;
+    }
+    match run_together(QEMU_BOARDS.map(|board| workspace.cargo(board, "run --quiet --locked --release"))) {
+        Ok(outputs) => hold_budgets(workspace, &outputs),
+        Err(reason) => Outcome::Failed(reason),
+    }
+}
+
+/// Holds what the boards counted against their budgets, or makes it the budgets.
+fn hold_budgets(workspace: &Workspace, outputs: &[String]) -> Outcome {
+    let path = workspace.file(BUDGETS);
+    let names = QEMU_BOARDS.map(|board| board.trim_start_matches("boards/").to_owned());
+    let counted: Budgets = names.into_iter().zip(outputs.iter().map(|output| budgets::counted(output))).collect();
+    if workspace.is_blessing() {
+        return match budgets::write(&path, &counted) {
+            Ok(()) => Outcome::Passed,
+            Err(error) => Outcome::Failed(format!("{BUDGETS} can't be written: {error}")),
+        };
+    }
+    let committed = match budgets::read(&path) {
+        Ok(committed) => committed,
+        Err(error) => return Outcome::Failed(format!("{BUDGETS} can't be read: {error}")),
+    };
+    let hold = |(board, counts): (&String, &Counts)| {
+        budgets::violations(board, committed.get(board), counts, |line| println!("{line}"))
+    };
+    let violations: Vec<String> = counted.iter().flat_map(hold).collect();
+    if violations.is_empty() { Outcome::Passed } else { Outcome::Failed(violations.join("; ")) }
+}
+
+fn aarch64(workspace: &Workspace) -> Outcome {
+    run_board(workspace, AARCH64_BOARD, setup::AARCH64_EMULATOR)
+}
+
+fn wasm(workspace: &Workspace) -> Outcome {
+    run_board(workspace, WASM_BOARD, setup::WASM_ENGINE)
+}
+
+fn run_board(workspace: &Workspace, board: &str, runner: Program) -> Outcome {
+    match setup::missing(runner) {
+        Some(reason) => Outcome::Skipped(reason),
+        None => run_all([workspace.cargo(board, "run --locked --release")]),
+    }
 }
 
 #[cfg(test)]

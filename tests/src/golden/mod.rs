@@ -1,9 +1,10 @@
 //! Golden vectors: attempts recorded once, with what the localizer answered, for every machine to agree with.
 //!
-//! Three files in `tests/fixtures/golden/`: a map of a few nodes of the generated office, the looks of some hundred
+//! Files in `tests/fixtures/golden/`: a map of a few nodes of the generated office, the looks of some hundred
 //! attempts in it ([`edgeloc_firmware::looks`]), and one line of text for each look with the decision and all scores.
-//! Boards hold them in flash and compare; a test holds them against what is made today. A fourth, `learned.txt`, pins
-//! what robots [learn](learned()) by themselves, on the host alone.
+//! `kernels.txt` holds what the [kernels](edgeloc_firmware::run_kernels) make of drawn inputs. Boards hold all of these in
+//! flash and compare; a test holds them against what is made today. The last, `learned.txt`, pins what robots
+//! [learn](learned()) by themselves, on the host alone.
 
 mod attempts;
 mod learned;
@@ -26,6 +27,8 @@ pub struct Golden {
     pub looks: Vec<u8>,
     /// A line for each look.
     pub expected: String,
+    /// A line for each kind of input that the kernels are tried with.
+    pub kernels: String,
     /// A line for each batch of corners and each step of an exploration.
     pub learned: String,
 }
@@ -44,7 +47,12 @@ impl Golden {
             expected.push('\n');
         })
         .expect("looks just written can be replayed");
-        Self { map, looks, expected, learned: learned() }
+        let mut kernels = String::new();
+        edgeloc_firmware::run_kernels(|line| {
+            kernels.push_str(line);
+            kernels.push('\n');
+        });
+        Self { map, looks, expected, kernels, learned: learned() }
     }
 
     /// Reads the committed ones.
@@ -52,9 +60,14 @@ impl Golden {
     /// # Errors
     /// When a file is missing or can't be read.
     pub fn load() -> io::Result<Self> {
-        let [map, looks, expected, learned] = Self::paths();
-        let (expected, learned) = (fs::read_to_string(expected)?, fs::read_to_string(learned)?);
-        Ok(Self { map: fs::read(map)?, looks: fs::read(looks)?, expected, learned })
+        let [map, looks, expected, kernels, learned] = Self::paths();
+        Ok(Self {
+            map: fs::read(map)?,
+            looks: fs::read(looks)?,
+            expected: fs::read_to_string(expected)?,
+            kernels: fs::read_to_string(kernels)?,
+            learned: fs::read_to_string(learned)?,
+        })
     }
 
     /// Replaces the committed ones.
@@ -62,15 +75,16 @@ impl Golden {
     /// # Errors
     /// When a file can't be written.
     pub fn save(&self) -> io::Result<()> {
-        let [map, looks, expected, learned] = Self::paths();
+        let [map, looks, expected, kernels, learned] = Self::paths();
+        fs::write(kernels, &self.kernels)?;
         fs::write(learned, &self.learned)?;
         fs::write(map, &self.map)?;
         fs::write(looks, &self.looks)?;
         fs::write(expected, &self.expected)
     }
 
-    fn paths() -> [PathBuf; 4] {
+    fn paths() -> [PathBuf; 5] {
         let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/golden"));
-        ["office.map", "looks.bin", "expected.txt", "learned.txt"].map(|name| folder.join(name))
+        ["office.map", "looks.bin", "expected.txt", "kernels.txt", "learned.txt"].map(|name| folder.join(name))
     }
 }

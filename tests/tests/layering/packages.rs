@@ -41,6 +41,8 @@ fn violations(folder: &str, manifest: &str) -> Vec<String> {
             "tests/gate" => Some("the gate must report even when nothing else builds"),
             "tests" | "benches" => None,
             "boards/firmware" | "boards/protocol" => ours(&["edgeloc", "edgeloc-protocol"]),
+            _ if folder.starts_with("boards/qemu-") => ours(&["edgeloc-firmware", "edgeloc-protocol", "edgeloc-qemu"])
+                .map(|_| "a board holds pins and memory: it goes through the firmware"),
             _ if folder.starts_with("boards/") => ours(&["edgeloc-firmware", "edgeloc-protocol"])
                 .map(|_| "a board holds pins and memory: it goes through the firmware"),
             _ => Some("its folder is not in the table of packages"),
@@ -97,6 +99,7 @@ fn a_dependency_upwards_is_found() {
         ("tests/gate", "[build-dependencies]\ncc = \"1\""),
         ("boards/firmware", "[dependencies]\nedgeloc-sim = { path = \"../../host-sim\" }"),
         ("boards/qemu-mps2-an500", "[dependencies]\nedgeloc = { path = \"../../core\" }"),
+        ("boards/stm32h743", "[dependencies]\nedgeloc-qemu = { path = \"../qemu\" }"),
         ("attic", "[dependencies]\nlibm = \"1\""),
     ] {
         assert_eq!(violations(folder, manifest).len(), 1, "{folder}: {manifest}");
@@ -111,6 +114,7 @@ fn a_dependency_downwards_is_left_alone() {
         ("host-sim", "[dependencies]\nedgeloc.workspace = true\nclap = \"4\""),
         ("boards/firmware", "[dependencies]\nedgeloc = { path = \"../../core\" }"),
         ("boards/qemu-mps2-an500", "[dependencies]\nedgeloc-firmware = { path = \"../firmware\" }"),
+        ("boards/qemu-mps2-an500", "[dependencies]\nedgeloc-qemu = { path = \"../qemu\" }"),
     ] {
         assert!(violations(folder, manifest).is_empty(), "{folder}: {manifest}");
     }

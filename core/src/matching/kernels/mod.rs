@@ -3,9 +3,15 @@
 //! Several bodies, the same bits: integer sums do not depend on their order, and what is not written by hand is the same
 //! portable source compiled once for each set of instructions.
 
-#[cfg(any(test, not(target_arch = "x86_64")))]
+#[cfg(edgeloc_body = "smlad")]
+mod cortex_m;
+#[cfg(edgeloc_body = "neon")]
+mod neon;
+#[cfg(any(test, edgeloc_body = "portable"))]
 mod portable;
-#[cfg(target_arch = "x86_64")]
+#[cfg(edgeloc_body = "simd128")]
+mod simd128;
+#[cfg(edgeloc_body = "x86_64")]
 mod x86_64;
 
 use super::{BinPair, PanelRow};
@@ -28,14 +34,24 @@ pub(crate) trait Work {
     fn run<B: Body>(self, body: B) -> Self::Output;
 }
 
-#[cfg(not(target_arch = "x86_64"))]
+#[cfg(edgeloc_body = "smlad")]
+use cortex_m::Smlad as Known;
+#[cfg(edgeloc_body = "neon")]
+use neon::Neon as Known;
+#[cfg(edgeloc_body = "portable")]
+use portable::Portable as Known;
+#[cfg(edgeloc_body = "simd128")]
+use simd128::Simd128 as Known;
+
+/// Does `work` with the body that the machine is known to have when this is compiled.
+#[cfg(not(edgeloc_body = "x86_64"))]
 pub(crate) fn run<W: Work>(work: W) -> W::Output {
-    work.run(portable::Portable)
+    work.run(Known)
 }
-#[cfg(target_arch = "x86_64")]
+#[cfg(edgeloc_body = "x86_64")]
 pub(crate) use x86_64::run;
 
-#[cfg(all(test, target_arch = "x86_64"))]
+#[cfg(all(test, edgeloc_body = "x86_64"))]
 mod tests {
     use super::*;
     use crate::geometry::{Point2, Polarity, Segment2};

@@ -14,9 +14,10 @@ impl Body for Portable {
         for pair in row {
             let Some(bins) = panel.get(usize::from(pair.index)) else { continue };
             let [even, odd] = pair.roots.map(i32::from);
-            // By Cauchy and Schwarz no partial sum of unit rows passes 2^30 by more than rounding.
+            // By Cauchy and Schwarz no partial sum of unit rows passes 2^30 by more than rounding; others wrap.
             for (sum, lane) in sums.iter_mut().zip(&bins.roots) {
-                *sum = sum.wrapping_add(even * i32::from(lane[0]) + odd * i32::from(lane[1]));
+                let both = (even * i32::from(lane[0])).wrapping_add(odd * i32::from(lane[1]));
+                *sum = sum.wrapping_add(both);
             }
         }
         sums.into_iter().fold(0, i32::max)
