@@ -234,7 +234,7 @@ impl Validate {
 
     /// Nodes that give a world the office's density.
     fn nodes_for(&self, scenario: &Scenario) -> Result<u16> {
-        let world = worlds::open(&scenario)?;
+        let world = worlds::open(scenario)?;
         let area_m2 = FreeSpace::of(&world, &FreeSpaceOptions::default()).into_diagnostic()?.area_m2();
         Ok((area_m2 / M2_PER_NODE).round().clamp(1.0, 4096.0) as u16)
     }
