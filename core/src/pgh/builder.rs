@@ -51,7 +51,7 @@ struct Scratch<'m> {
     steps: &'m mut [i32],
     /// `[distance][angle]`: the histogram, and a bin more for an odd number of them.
     masses: &'m mut [i32],
-    /// Indices of the pairs of bins that aren't empty.
+    /// Indices of the pairs of bins that aren't empty; or the roots of pairs.
     indices: &'m mut [i32],
 }
 
@@ -153,12 +153,15 @@ impl<'m> HistogramBuilder<'m> {
             return self.build(reference, index, put);
         }
         let Some(masses) = self.gather_masses(reference, index) else { return };
-        let roots = &mut self.scratch.masses[2 * masses.pairs.start..2 * masses.pairs.end];
-        for root in &mut *roots {
-            *root = root_q15(*root, masses.per_mass);
+        let bins = &self.scratch.masses[2 * masses.pairs.start..2 * masses.pairs.end];
+        let packed = &mut self.scratch.indices[..masses.pairs.len()];
+        let root = |mass| root_q15(mass, masses.per_mass);
+        let pack = |even: i32, odd: i32| even & 0xffff | odd << 16;
+        for (packed, [even, odd]) in packed.iter_mut().zip(bins.as_chunks().0) {
+            *packed = pack(root(*even), root(*odd));
         }
-        for (index, [even, odd]) in masses.pairs.zip(roots.as_chunks().0) {
-            put(index as u16, [*even as i16, *odd as i16]);
+        for (index, packed) in masses.pairs.zip(packed) {
+            put(index as u16, [*packed as i16, (*packed >> 16) as i16]);
         }
     }
 
