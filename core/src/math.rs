@@ -33,6 +33,16 @@ pub fn round(x: f32) -> f32 {
     libm::roundf(x)
 }
 
+/// Nearest integer to `x`, halves away from zero, for magnitudes up to 2^30: [`round`] without a call.
+#[must_use]
+#[inline]
+pub fn round_to_i32(x: f32) -> i32 {
+    let whole = x as i32;
+    // Exact: from 2^23 on there is no fraction.
+    let fraction = x - whole as f32;
+    whole + i32::from(fraction >= 0.5) - i32::from(fraction <= -0.5)
+}
+
 /// Largest integer not above `x`.
 #[must_use]
 pub fn floor(x: f32) -> f32 {
@@ -81,5 +91,21 @@ pub mod double {
     #[must_use]
     pub fn sin_cos(radians: f64) -> (f64, f64) {
         libm::sincos(radians)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounding_without_a_call_is_rounding() {
+        let near = |x: f32| (-3..=3).map(move |steps: i32| f32::from_bits(x.to_bits().wrapping_add(steps as u32)));
+        let halves = (0..4000).map(|half| half as f32 * 0.5);
+        let large = (0..30).map(|exponent| (1_u32 << exponent) as f32 + 0.5);
+        for x in halves.chain(large).filter(|x| *x > 0.0).flat_map(near).chain([0.0, 1.0e-30]) {
+            assert_eq!(round_to_i32(x), round(x) as i32, "{x}");
+            assert_eq!(round_to_i32(-x), round(-x) as i32, "-{x}");
+        }
     }
 }

@@ -53,9 +53,9 @@ impl BinaryAngle {
     /// Rounds `radians` to steps of `period_radians / 65536`, modulo the period.
     #[must_use]
     pub fn from_radians(radians: f32, period_radians: f32) -> Self {
-        let steps = math::round(radians / period_radians * 65_536.0);
+        let steps = math::round_to_i32(radians / period_radians * 65_536.0);
         // The angles of this library are a few periods at most, so the steps fit an i32; the mask wraps.
-        Self((steps as i32 & 0xffff) as u16)
+        Self((steps & 0xffff) as u16)
     }
 
     /// The angle from `reference` to `self`, wrapped into one period.

@@ -84,6 +84,25 @@ impl PinholeCamera {
         Segment2::new(start, end, segment.polarity).ok()
     }
 
+    /// Whether [`Self::project_segment`] surely sees nothing of the segment from `start` to `end`, both within 100 m:
+    /// nearer than the limit, or to the left or to the right of the image as a whole. Cheap; most of what a node knows is
+    /// beside the image.
+    ///
+    /// A point lies to the left where `principal x * z + focal length * x < 0`. That is linear, so that the part beyond the
+    /// near limit does as well. What must not be seen here is told apart by a margin of more than a hundred times the
+    /// rounding of this and of the projection.
+    #[inline]
+    pub(crate) fn is_surely_beside(&self, start: Point3, end: Point3, near_limit_m: f32) -> bool {
+        const MARGIN_M: f32 = 100.0 * 1.0e-5;
+        let (left, right) = (self.principal_point_px.x, f32::from(self.width_px) - self.principal_point_px.x);
+        let margin = MARGIN_M * (self.focal_length_px + f32::from(self.width_px));
+        let from_left = |point: Point3| left * point.z + self.focal_length_px * point.x;
+        let from_right = |point: Point3| right * point.z - self.focal_length_px * point.x;
+        (start.z < near_limit_m && end.z < near_limit_m)
+            || (from_left(start) < -margin && from_left(end) < -margin)
+            || (from_right(start) < -margin && from_right(end) < -margin)
+    }
+
     /// The part of the segment from `start` to `end` inside the image rectangle.
     #[must_use]
     pub fn clip_to_image(&self, start: Point2, end: Point2) -> Option<(Point2, Point2)> {
@@ -154,6 +173,7 @@ impl core::error::Error for CameraError {}
 mod tests {
     use super::*;
     use crate::geometry::Polarity;
+    use proptest::prelude::*;
 
     const CAMERA: PinholeCamera = PinholeCamera::reference();
 
@@ -189,5 +209,49 @@ mod tests {
     fn segments_behind_or_beside_the_view_are_not_seen() {
         assert!(CAMERA.project_segment(&segment((0.0, 0.0, -1.0), (0.0, 1.0, -1.0)), 0.15).is_none());
         assert!(CAMERA.project_segment(&segment((9.0, -0.5, 1.0), (9.0, 0.5, 1.0)), 0.15).is_none());
+    }
+
+    fn told_apart() -> impl Strategy<Value = (PinholeCamera, f32, Segment3)> {
+        let camera = (1.0..2000.0_f32, 1_u16..2048, 0.0..1.0_f32).prop_map(|(focal_length_px, width, at)| {
+            let principal = Point2::new(f32::from(width) * at, 100.0);
+            PinholeCamera::new((width, 200), focal_length_px, principal).expect("in range")
+        });
+        // Anywhere, and within rounding of the borders of the view and of the near limit.
+        let end = (-46.0..46.0_f32, -33.0..33.0_f32, -46.0..46.0_f32, 0..5_u8, -3.0e-3..3.0e-3_f32);
+        (camera, 0.01..1.0_f32, end.clone(), end).prop_map(|(camera, near_limit_m, start, end)| {
+            let point = |(x, y, z, place, off): (f32, f32, f32, u8, f32)| {
+                let border = |column_px: f32| (column_px - camera.principal_point_px.x) / camera.focal_length_px;
+                match place {
+                    0 => Point3::new(border(0.0) * z + off, y, z),
+                    1 => Point3::new(border(f32::from(camera.width_px)) * z + off, y, z),
+                    2 => Point3::new(x, y, near_limit_m + off),
+                    3 => Point3::new(border(0.0) * near_limit_m + off, y, near_limit_m + 0.1 * off),
+                    _ => Point3::new(x, y, z),
+                }
+            };
+            (camera, near_limit_m, Segment3 { start: point(start), end: point(end), polarity: Polarity::LeftBrighter })
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+
+        #[test]
+        fn what_is_surely_beside_is_not_seen((camera, near_limit_m, segment) in told_apart()) {
+            let is_beside = camera.is_surely_beside(segment.start, segment.end, near_limit_m);
+            prop_assert!(!is_beside || camera.project_segment(&segment, near_limit_m).is_none());
+        }
+    }
+
+    #[test]
+    fn most_of_what_is_not_seen_is_told_beforehand() {
+        let (mut unseen, mut beside) = (0, 0);
+        for degrees in 0..360 {
+            let (sin, cos) = math::sin_cos((degrees as f32).to_radians());
+            let post = segment((4.0 * sin, -0.5, 4.0 * cos), (4.0 * sin, 0.5, 4.0 * cos));
+            unseen += usize::from(CAMERA.project_segment(&post, 0.15).is_none());
+            beside += usize::from(CAMERA.is_surely_beside(post.start, post.end, 0.15));
+        }
+        assert_eq!((unseen, beside), (295, 295));
     }
 }

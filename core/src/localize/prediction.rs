@@ -18,6 +18,9 @@ pub fn predict_view<'a>(
     let camera_from_node =
         move |point: Point3| Point3::new(point.x * sin - point.y * cos, -point.z, point.x * cos + point.y * sin);
     node.segments().filter_map(move |segment| {
+        if camera.is_surely_beside(camera_from_node(segment.start), camera_from_node(segment.end), near_limit_m) {
+            return None;
+        }
         let in_camera = Segment3 {
             start: camera_from_node(segment.start),
             end: camera_from_node(segment.end),

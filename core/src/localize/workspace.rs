@@ -72,7 +72,12 @@ pub(super) const fn sum(parts: &[usize]) -> usize {
 
 /// Saturates, so that a configuration out of range asks for more memory than there is and is refused.
 pub(super) const fn words<T>(count: usize) -> usize {
-    count.saturating_mul(size_of::<T>()).div_ceil(size_of::<u64>())
+    count.saturating_mul(size_of::<T>()).div_ceil(size_of::<u64>()).saturating_add(slack::<T>())
+}
+
+/// Words that may be skipped before items that begin with a larger boundary than a word's.
+const fn slack<T>() -> usize {
+    align_of::<T>().div_ceil(size_of::<u64>()) - 1
 }
 
 impl<'m> Workspace<'m> {
@@ -121,6 +126,8 @@ impl<'m> Rest<'m> {
     pub(super) fn take<T: FromBytes + IntoBytes>(&mut self, count: usize) -> Option<&'m mut [T]> {
         let (taken, rest) = core::mem::take(&mut self.words).split_at_mut_checked(words::<T>(count))?;
         self.words = rest;
+        let skipped = taken.as_ptr().align_offset(align_of::<T>().max(size_of::<u64>()));
+        let taken = taken.get_mut(skipped..)?;
         let (items, _) = <[T]>::mut_from_prefix_with_elems(taken.as_mut_bytes(), count).ok()?;
         Some(items)
     }

@@ -15,9 +15,9 @@ pub struct BinPair {
     pub roots: [i16; 2],
 }
 
-/// The same pair of bins of every line of a panel, aligned as working memory is.
+/// The same pair of bins of every line of a panel: a cache line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, FromBytes, IntoBytes, Immutable)]
-#[repr(C, align(8))]
+#[repr(C, align(64))]
 pub struct PanelRow {
     /// Square roots in Q15 of two bins, for each line.
     pub roots: [[i16; 2]; LANES],
@@ -132,7 +132,7 @@ impl<'m> Panel<'m> {
         self.rows.fill(PanelRow::EMPTY);
         for (lane, (reference, line)) in lines.iter().enumerate().skip(first).take(LANES).enumerate() {
             let rows = &mut *self.rows;
-            builder.build(line, reference, |index, roots| {
+            builder.build_dense(line, reference, |index, roots| {
                 if let Some(row) = rows.get_mut(usize::from(index)) {
                     row.roots[lane] = roots;
                 }
@@ -168,5 +168,76 @@ impl Work for Coefficient<'_> {
     #[inline(always)]
     fn run<B: Body>(self, body: B) -> i32 {
         body.best_coefficient(self.row, self.rows)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Point2, Polarity, Segment2};
+    use crate::pgh::{DistanceKind, LineBlock, PghShape};
+    use proptest::prelude::*;
+    use std::vec;
+    use std::vec::Vec;
+
+    /// The histograms of all lines, dense: as rows hold them, and as panels do that held other ones before.
+    struct BothForms<'a>(&'a PghShape, &'a [Line]);
+
+    impl Work for BothForms<'_> {
+        type Output = [Vec<Vec<[i16; 2]>>; 2];
+
+        fn run<B: Body>(self, _: B) -> Self::Output {
+            let Self(shape, lines) = self;
+            let mut memory = vec![-1; HistogramBuilder::memory_len(shape)];
+            let mut blocks = vec![LineBlock::EMPTY; LineBlock::count_for(lines.len())];
+            let mut builder = HistogramBuilder::new(shape, &mut memory, &mut blocks).expect("enough memory");
+            builder.load(lines).expect("enough blocks");
+            let mut of_rows = vec![vec![[0; 2]; pair_count(shape.bin_count())]; lines.len()];
+            let mut panel_rows = vec![PanelRow { roots: [[7; 2]; LANES] }; Panel::rows_len(shape.bin_count())];
+            let mut of_panels = Vec::new();
+            for first in (0..lines.len()).step_by(LANES) {
+                let mut panel = Panel::new(&mut panel_rows);
+                panel.fill(&mut builder, lines, first);
+                let lane = |lane: usize| panel.rows.iter().map(|row| row.roots[lane]).collect();
+                of_panels.extend((0..LANES.min(lines.len() - first)).map(lane));
+                // In turns, so that what the one leaves behind would show in the other.
+                for (reference, line) in lines.iter().enumerate().skip(first).take(LANES) {
+                    builder.build(line, reference, |index, roots| of_rows[reference][usize::from(index)] = roots);
+                }
+            }
+            [of_rows, of_panels]
+        }
+    }
+
+    fn segment() -> impl Strategy<Value = Segment2> {
+        let point = |reach: f32| (-reach..reach, -reach..reach).prop_map(|(x, y)| Point2::new(x, y));
+        let near =
+            (point(300.0), point(40.0)).prop_map(|(start, way)| (start, Point2::new(start.x + way.x, start.y + way.y)));
+        prop_oneof![(point(2048.0), point(2048.0)), (point(300.0), point(300.0)), near]
+            .prop_filter_map("long enough", |(start, end)| Segment2::new(start, end, Polarity::LeftBrighter).ok())
+    }
+
+    proptest! {
+        #[test]
+        fn panels_hold_what_rows_hold(
+            bins in (1_u16..40, 1_u16..40),
+            max_distance_px in 20.0..800.0_f32,
+            (is_signed, uses_polarity, interpolates_angle) in any::<(bool, bool, bool)>(),
+            segments in prop::collection::vec(segment(), 0..40),
+        ) {
+            let distance = if is_signed { DistanceKind::Signed } else { DistanceKind::Unsigned };
+            let max_distance_px = max_distance_px.clamp(f32::from(bins.0), 400.0 * f32::from(bins.0));
+            let shape = PghShape {
+                distance_bins: bins.0,
+                angle_bins: bins.1,
+                max_distance_px,
+                distance,
+                uses_polarity,
+                interpolates_angle,
+            };
+            let lines: Vec<Line> = segments.iter().map(|segment| Line::new(segment, 0, &shape)).collect();
+            let [of_rows, of_panels] = kernels::run(BothForms(&shape, &lines));
+            prop_assert_eq!(of_rows, of_panels);
+        }
     }
 }

@@ -7,7 +7,7 @@ use zerocopy::{FromBytes, Immutable, IntoBytes};
 pub(super) const BLOCK: usize = if cfg!(target_pointer_width = "64") { WIDEST } else { 1 };
 
 /// Memory is for whole blocks of this many on every machine, so that all ask for the same.
-const WIDEST: usize = 16;
+pub(super) const WIDEST: usize = 16;
 
 /// Some lines of a scene, field by field; places left empty hold lines of length 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, FromBytes, IntoBytes, Immutable)]

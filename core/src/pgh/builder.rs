@@ -11,11 +11,12 @@
 //! worst (a sliver of mass over a bin border, magnified by the root), view scores of twenty or more by less than 3e-4:
 //! measured against the naive `f64` twin.
 
-use super::block::BLOCK;
+use super::block::{BLOCK, WIDEST};
 use super::root::{nearest, root_q15};
 use super::{DistanceKind, Line, LineBlock, PghShape, ShapeError};
 use crate::geometry::{CapacityError, Segment2};
 use core::fmt;
+use core::ops::Range;
 
 /// Positions along the distance axis have this many fractional bits of a bin.
 const POSITION_BITS: u32 = 12;
@@ -41,20 +42,28 @@ pub struct HistogramBuilder<'m> {
     scratch: Scratch<'m>,
 }
 
-/// Masses on their way to a histogram, in units of 1/256 px of length.
+/// Masses on their way to a histogram, in units of 1/256 px of length. Both grids are empty between histograms.
 #[derive(Debug)]
 struct Scratch<'m> {
-    /// `[distance + 1][angle + 2]`: masses in the first and the last distance bin of each line.
+    /// `[distance + 1][stride]`: masses in the first and the last distance bin of each line.
     ends: &'m mut [i32],
     /// The same of mass differences along the distance axis, for the bins between.
     steps: &'m mut [i32],
     /// `[distance][angle]`: the histogram, and a bin more for an odd number of them.
     masses: &'m mut [i32],
+    /// Indices of the pairs of bins that aren't empty; or the roots of pairs.
+    indices: &'m mut [i32],
+}
+
+/// Columns of the grids: whole vectors where there are any.
+const fn stride_of(angle_bins: usize, block: usize) -> usize {
+    (angle_bins + WRAPPED).next_multiple_of(block)
 }
 
 impl Scratch<'_> {
+    /// The same on every machine, whatever its stride.
     const fn grid_len(shape: &PghShape) -> usize {
-        (shape.distance_bins as usize + 1).saturating_mul(shape.angle_bins as usize + WRAPPED)
+        (shape.distance_bins as usize + 1).saturating_mul(stride_of(shape.angle_bins as usize, WIDEST))
     }
 
     const fn masses_len(shape: &PghShape) -> usize {
@@ -66,7 +75,7 @@ impl<'m> HistogramBuilder<'m> {
     /// Number of `i32` a builder for `shape` works on.
     #[must_use]
     pub const fn memory_len(shape: &PghShape) -> usize {
-        2 * Scratch::grid_len(shape) + Scratch::masses_len(shape)
+        2 * Scratch::grid_len(shape) + Scratch::masses_len(shape) + shape.bin_count().div_ceil(2) + WIDEST - 1
     }
 
     /// A builder for histograms of `shape`, working in `memory`, for scenes of as many lines as `blocks` hold.
@@ -78,8 +87,13 @@ impl<'m> HistogramBuilder<'m> {
         let (capacity, needed) = (memory.len(), Self::memory_len(&shape));
         let too_small = CapacityError { what: "histogram masses", capacity, needed };
         let memory = memory.get_mut(..needed).ok_or(BuilderError::Memory(too_small))?;
-        let (ends, memory) = memory.split_at_mut(Scratch::grid_len(&shape));
-        let (steps, masses) = memory.split_at_mut(Scratch::grid_len(&shape));
+        // The grids begin with a cache line; where that can't be told they may lie anywhere.
+        let unaligned = memory.as_ptr().align_offset(size_of::<[i32; WIDEST]>()).min(WIDEST - 1);
+        let (ends, memory) = memory[unaligned..].split_at_mut(Scratch::grid_len(&shape));
+        let (steps, memory) = memory.split_at_mut(Scratch::grid_len(&shape));
+        let (masses, indices) = memory.split_at_mut(Scratch::masses_len(&shape));
+        ends.fill(0);
+        steps.fill(0);
         let bins_per_px = 1.0 / shape.distance_bin_width_px();
         // The farthest two points can be apart, and the offset of a signed axis.
         let reach = 3.0 * Segment2::MAX_COORDINATE_PX * bins_per_px + f32::from(shape.distance_bins / 2 + 2);
@@ -92,7 +106,7 @@ impl<'m> HistogramBuilder<'m> {
             wide_bits: (reach as u32).leading_zeros() - 1,
             blocks,
             line_count: 0,
-            scratch: Scratch { ends, steps, masses },
+            scratch: Scratch { ends, steps, masses, indices },
         })
     }
 
@@ -120,31 +134,63 @@ impl<'m> HistogramBuilder<'m> {
     /// order; a bin is `distance bin x angle bins + angle bin`, a root the square root of its share of the mass in Q15.
     #[inline(always)]
     pub fn build(&mut self, reference: &Line, index: usize, mut put: impl FnMut(u16, [i16; 2])) {
-        self.scratch.ends.fill(0);
-        self.scratch.steps.fill(0);
-        let Some(own_length) = self.swap_length(index, 0) else { return };
-        let frame = Frame::about(reference, self);
-        let blocks = self.line_count.div_ceil(BLOCK);
-        for block in &self.blocks[..blocks] {
-            self.scratch.add(&frame, block);
-            if self.distance == DistanceKind::Unsigned {
-                self.scratch.add(&frame.mirrored(), block);
-            }
-        }
-        self.swap_length(index, own_length);
-        let total = self.scratch.sum(self.distance_bins, self.angle_bins);
-        if total == 0 {
-            return;
-        }
-        let pairs = self.scratch.gather_pairs();
-        let per_mass = 1.0 / total as f32;
-        let (indices, roots) = (&self.scratch.steps[..pairs], &mut self.scratch.ends[..2 * pairs]);
+        let Some(masses) = self.gather_masses(reference, index) else { return };
+        let count = self.scratch.gather_pairs(masses.pairs);
+        let (indices, roots) = (&self.scratch.indices[..count], &mut self.scratch.masses[..2 * count]);
         for root in &mut *roots {
-            *root = root_q15(*root, per_mass);
+            *root = root_q15(*root, masses.per_mass);
         }
         for (index, [even, odd]) in indices.iter().zip(roots.as_chunks().0) {
             put(*index as u16, [*even as i16, *odd as i16]);
         }
+    }
+
+    /// The same for a receiver that takes empty pairs too, as long as all others are among them: where there are vectors,
+    /// telling them apart takes longer than their roots.
+    #[inline(always)]
+    pub(crate) fn build_dense(&mut self, reference: &Line, index: usize, mut put: impl FnMut(u16, [i16; 2])) {
+        if BLOCK == 1 {
+            return self.build(reference, index, put);
+        }
+        let Some(masses) = self.gather_masses(reference, index) else { return };
+        let bins = &self.scratch.masses[2 * masses.pairs.start..2 * masses.pairs.end];
+        let packed = &mut self.scratch.indices[..masses.pairs.len()];
+        let root = |mass| root_q15(mass, masses.per_mass);
+        let pack = |even: i32, odd: i32| even & 0xffff | odd << 16;
+        for (packed, [even, odd]) in packed.iter_mut().zip(bins.as_chunks().0) {
+            *packed = pack(root(*even), root(*odd));
+        }
+        for (index, packed) in masses.pairs.zip(packed) {
+            put(index as u16, [*packed as i16, (*packed >> 16) as i16]);
+        }
+    }
+
+    /// Brings the masses of a histogram together; `None` if it has none.
+    #[inline(always)]
+    fn gather_masses(&mut self, reference: &Line, index: usize) -> Option<Masses> {
+        let own_length = self.swap_length(index, 0)?;
+        let frame = Frame::about(reference, self);
+        let mut reach = Reach::NONE;
+        let blocks = self.line_count.div_ceil(BLOCK);
+        for block in &self.blocks[..blocks] {
+            self.scratch.add(&frame, block, &mut reach);
+            if self.distance == DistanceKind::Unsigned {
+                self.scratch.add(&frame.mirrored(), block, &mut reach);
+            }
+        }
+        self.swap_length(index, own_length);
+        let rows = reach.rows();
+        let total = self.scratch.sum(&rows, self.distance_bins, self.angle_bins, frame.stride as usize);
+        let bins = rows.start * self.angle_bins..rows.end.min(self.distance_bins) * self.angle_bins;
+        // A pair of bins may reach into the row before or behind.
+        if let Some(before) = bins.start.checked_sub(1) {
+            self.scratch.masses[before] = 0;
+        }
+        if let Some(behind) = self.scratch.masses.get_mut(bins.end) {
+            *behind = 0;
+        }
+        let pairs = bins.start / 2..bins.end.div_ceil(2);
+        (total > 0).then(|| Masses { per_mass: 1.0 / total as f32, pairs })
     }
 
     /// Replaces the length of a line and returns what it was; `None` where there is no line.
@@ -152,6 +198,15 @@ impl<'m> HistogramBuilder<'m> {
         let block = self.blocks[..self.line_count.div_ceil(BLOCK)].get_mut(index / BLOCK)?;
         Some(core::mem::replace(&mut block.length_q4[index % BLOCK], length_q4))
     }
+}
+
+/// What is known of the masses of a histogram.
+#[derive(Debug)]
+struct Masses {
+    /// One by their total.
+    per_mass: f32,
+    /// The pairs of bins that may hold any.
+    pairs: Range<usize>,
 }
 
 /// A reference line with its histogram's axes.
@@ -197,7 +252,7 @@ impl Frame {
             angle_bins: builder.angle_bins as i32,
             angle_offset: if builder.interpolates_angle { 0 } else { 0x8000 },
             angle_mask: if builder.interpolates_angle { 0xffff } else { 0 },
-            stride: (builder.angle_bins + WRAPPED) as i32,
+            stride: stride_of(builder.angle_bins, BLOCK) as i32,
         }
     }
 
@@ -217,7 +272,7 @@ impl Frame {
 
     /// What each line of a block adds to the grid.
     #[inline(always)]
-    fn shares(&self, block: &LineBlock) -> Shares {
+    fn shares(&self, block: &LineBlock, reach: &mut Reach) -> Shares {
         let mut shares = Shares::NONE;
         for i in 0..BLOCK {
             let a = self.position(block.start_x_q4[i], block.start_y_q4[i]);
@@ -228,6 +283,8 @@ impl Frame {
             // A mass is 16 times a length in Q4 px.
             let density = (block.length_q4[i] << 4) as f32 / span as f32;
             let (low, high) = (low.max(0).min(self.end), (low + span).max(0).min(self.end));
+            reach.least[i] = reach.least[i].min(low);
+            reach.greatest[i] = reach.greatest[i].max(high);
 
             let (first, last) = (low >> POSITION_BITS, high >> POSITION_BITS);
             let border = (first + 1) << POSITION_BITS;
@@ -275,60 +332,85 @@ impl Shares {
     };
 }
 
+/// The least and the greatest position of the lines of a scene along the distance axis, by place in their block.
+#[derive(Debug)]
+struct Reach {
+    least: [i32; BLOCK],
+    greatest: [i32; BLOCK],
+}
+
+impl Reach {
+    const NONE: Self = Self { least: [i32::MAX; BLOCK], greatest: [0; BLOCK] };
+
+    /// The rows of the grids that are not empty are among these; the last may be the one behind the last distance bin.
+    #[inline(always)]
+    fn rows(&self) -> Range<usize> {
+        let least = self.least.into_iter().fold(i32::MAX, i32::min) >> POSITION_BITS;
+        let greatest = self.greatest.into_iter().fold(0, i32::max) >> POSITION_BITS;
+        least.min(greatest) as usize..greatest as usize + 1
+    }
+}
+
 impl Scratch<'_> {
     #[inline(always)]
-    fn add(&mut self, frame: &Frame, block: &LineBlock) {
-        let shares = frame.shares(block);
+    fn add(&mut self, frame: &Frame, block: &LineBlock, reach: &mut Reach) {
+        let shares = frame.shares(block, reach);
         for i in 0..BLOCK {
             let (first, last) = (shares.first[i], shares.last[i]);
-            add_pair(self.ends, first, shares.in_first[i]);
-            add_pair(self.ends, last, shares.in_last[i]);
+            add_pair(self.ends, first, &shares.in_first[i]);
+            add_pair(self.ends, last, &shares.in_last[i]);
             if last - first > frame.stride {
-                add_pair(self.steps, first + frame.stride, shares.in_between[i]);
-                add_pair(self.steps, last, shares.in_between[i].map(i32::wrapping_neg));
+                add_pair(self.steps, first + frame.stride, &shares.in_between[i]);
+                add_pair(self.steps, last, &shares.in_between[i].map(i32::wrapping_neg));
             }
         }
     }
 
-    /// Brings everything together in `masses` and returns the total.
+    /// Brings the `rows` of the grids together in `masses`, leaves them empty and returns the total.
     #[inline(always)]
-    fn sum(&mut self, distance_bins: usize, angle_bins: usize) -> u32 {
-        let stride = angle_bins + WRAPPED;
-        let mut total = 0_i32;
-        for row in 0..distance_bins {
-            let (above, steps) = self.steps.split_at_mut(row * stride);
-            let steps = &mut steps[..stride];
-            if row > 0 {
-                for (step, running) in steps.iter_mut().zip(&above[(row - 1) * stride..]) {
-                    *step += running;
+    fn sum(&mut self, rows: &Range<usize>, distance_bins: usize, angle_bins: usize, stride: usize) -> u32 {
+        let mut totals = [0_i32; BLOCK];
+        for column in (0..stride).step_by(BLOCK) {
+            let mut running = [0_i32; BLOCK];
+            for row in rows.clone() {
+                let place = row * stride + column;
+                let step = self.steps[place..].first_chunk_mut();
+                let end = self.ends[place..].first_chunk_mut();
+                let (Some(step), Some(end)) = (step, end) else { break };
+                running = sum_of(&running, step);
+                let masses = sum_of(&running, end);
+                (*step, *end) = ([0; BLOCK], [0; BLOCK]);
+                if row == distance_bins {
+                    break;
+                }
+                totals = sum_of(&totals, &masses);
+                let bins = &mut self.masses[row * angle_bins..][..angle_bins];
+                if let Some(bins) = bins.get_mut(column..).and_then(<[i32]>::first_chunk_mut) {
+                    *bins = masses;
+                    continue;
+                }
+                for (column, mass) in (column..angle_bins + WRAPPED).zip(masses) {
+                    match column.checked_sub(angle_bins) {
+                        None => bins[column] = mass,
+                        Some(wrapped) => bins[wrapped.min(angle_bins - 1)] += mass,
+                    }
                 }
             }
-            let ends = &self.ends[row * stride..][..stride];
-            let masses = &mut self.masses[row * angle_bins..][..angle_bins];
-            for ((mass, end), step) in masses.iter_mut().zip(ends).zip(&*steps) {
-                *mass = end + step;
-            }
-            for wrapped in 0..WRAPPED {
-                let column = angle_bins + wrapped;
-                masses[wrapped.min(angle_bins - 1)] += ends[column] + steps[column];
-            }
-            total += masses.iter().sum::<i32>();
         }
-        for mass in &mut self.masses[distance_bins * angle_bins..] {
-            *mass = 0;
-        }
-        total as u32
+        totals.into_iter().sum::<i32>() as u32
     }
 
-    /// Moves the pairs of bins that aren't empty to the front of `ends`, their indices to that of `steps`.
+    /// Moves the pairs of bins that aren't empty, among those in `pairs`, to the front of `masses`, their indices to that of
+    /// `indices`; returns how many.
     #[inline(always)]
-    fn gather_pairs(&mut self) -> usize {
+    fn gather_pairs(&mut self, pairs: Range<usize>) -> usize {
         let mut count = 0;
-        let (ends, _) = self.ends.as_chunks_mut::<2>();
-        for (index, pair) in (0..).zip(self.masses.as_chunks::<2>().0) {
-            let (Some(place), Some(end)) = (self.steps.get_mut(count), ends.get_mut(count)) else { break };
-            (*place, *end) = (index, *pair);
-            let both: u64 = zerocopy::transmute!(*pair);
+        let (masses, _) = self.masses.as_chunks_mut::<2>();
+        for index in pairs {
+            let pair = masses[index];
+            let (Some(place), Some(mass)) = (self.indices.get_mut(count), masses.get_mut(count)) else { break };
+            (*place, *mass) = (index as i32, pair);
+            let both: u64 = zerocopy::transmute!(pair);
             count += usize::from(both != 0);
         }
         count
@@ -336,10 +418,17 @@ impl Scratch<'_> {
 }
 
 #[inline(always)]
-fn add_pair(grid: &mut [i32], place: i32, pair: [i32; 2]) {
-    if let Some(cells) = grid.get_mut(place as usize..).and_then(<[i32]>::first_chunk_mut) {
-        let [a, b] = *cells;
-        *cells = [a + pair[0], b + pair[1]];
+fn sum_of(a: &[i32; BLOCK], b: &[i32; BLOCK]) -> [i32; BLOCK] {
+    core::array::from_fn(|i| a[i] + b[i])
+}
+
+#[inline(always)]
+fn add_pair(grid: &mut [i32], place: i32, pair: &[i32; 2]) {
+    // No place is negative: one comparison is enough.
+    let place = place as u32 as usize;
+    if let Some([a, b]) = grid.get_mut(place..place + 2) {
+        *a += pair[0];
+        *b += pair[1];
     }
 }
 

@@ -41,13 +41,18 @@ impl Line {
             end_q4: to_q4(to),
             midpoint_q4: to_q4(from.lerp(to, 0.5)),
             normal_q30: [
-                math::round(-dy / length * 1_073_741_824.0) as i32,
-                math::round(dx / length * 1_073_741_824.0) as i32,
+                math::round_to_i32(-dy / length * 1_073_741_824.0),
+                math::round_to_i32(dx / length * 1_073_741_824.0),
             ],
-            length_q4: math::round(length * 16.0) as u32,
+            length_q4: Self::length_q4_of(length),
             order,
             direction: u32::from(BinaryAngle::from_radians(math::atan2(dy, dx), shape.period_radians()).0),
         }
+    }
+
+    /// A length in pixels in units of 1/16 px.
+    pub(super) fn length_q4_of(length_px: f32) -> u32 {
+        math::round_to_i32(length_px * 16.0) as u32
     }
 
     /// Length in units of 1/16 px.
@@ -70,5 +75,5 @@ impl Line {
 }
 
 fn to_q4(point: Point2) -> [i32; 2] {
-    [math::round(point.x * 16.0) as i32, math::round(point.y * 16.0) as i32]
+    [math::round_to_i32(point.x * 16.0), math::round_to_i32(point.y * 16.0)]
 }
