@@ -13,7 +13,10 @@ mod bhattacharyya;
 mod kernels;
 mod view_score;
 
-pub use bhattacharyya::{BinPair, Panel, PanelRow, RootRows};
-pub use kernels::LANES;
+pub use bhattacharyya::{BinPair, Panel, PanelRow, RootRows, best_coefficients};
+#[cfg(target_arch = "x86_64")]
+#[doc(hidden)]
+pub use kernels::limit_body;
 pub(crate) use kernels::{Body, Work, run};
+pub use kernels::{LANES, body_name};
 pub use view_score::{ViewScore, score_view};
