@@ -294,30 +294,34 @@ impl Scratch<'_> {
     #[inline(always)]
     fn sum(&mut self, distance_bins: usize, angle_bins: usize) -> u32 {
         let stride = angle_bins + WRAPPED;
-        let mut total = 0_i32;
-        for row in 0..distance_bins {
-            let (above, steps) = self.steps.split_at_mut(row * stride);
-            let steps = &mut steps[..stride];
-            if row > 0 {
-                for (step, running) in steps.iter_mut().zip(&above[(row - 1) * stride..]) {
-                    *step += running;
+        // First what wrapped: written shortly before it is read as part of a vector, it would have to be waited for.
+        for grid in [&mut *self.ends, &mut *self.steps] {
+            for row in grid.chunks_exact_mut(stride).take(distance_bins) {
+                match row {
+                    [first, second, .., wrapped_first, wrapped_second] => {
+                        *first += *wrapped_first;
+                        *second += *wrapped_second;
+                    }
+                    [only, wrapped_first, wrapped_second] => *only += *wrapped_first + *wrapped_second,
+                    _ => {}
                 }
             }
-            let ends = &self.ends[row * stride..][..stride];
-            let masses = &mut self.masses[row * angle_bins..][..angle_bins];
+        }
+        let mut running = [].as_slice();
+        let rows = self.steps.chunks_exact_mut(stride).zip(self.ends.chunks_exact(stride));
+        for ((steps, ends), masses) in rows.zip(self.masses.chunks_exact_mut(angle_bins)).take(distance_bins) {
+            let (steps, ends) = (&mut steps[..angle_bins], &ends[..angle_bins]);
+            for (step, running) in steps.iter_mut().zip(running) {
+                *step += running;
+            }
             for ((mass, end), step) in masses.iter_mut().zip(ends).zip(&*steps) {
                 *mass = end + step;
             }
-            for wrapped in 0..WRAPPED {
-                let column = angle_bins + wrapped;
-                masses[wrapped.min(angle_bins - 1)] += ends[column] + steps[column];
-            }
-            total += masses.iter().sum::<i32>();
+            running = steps;
         }
-        for mass in &mut self.masses[distance_bins * angle_bins..] {
-            *mass = 0;
-        }
-        total as u32
+        let (masses, odd) = self.masses.split_at_mut(distance_bins * angle_bins);
+        odd.fill(0);
+        masses.iter().sum::<i32>() as u32
     }
 
     /// Moves the pairs of bins that aren't empty to the front of `ends`, their indices to that of `steps`.
@@ -325,11 +329,23 @@ impl Scratch<'_> {
     fn gather_pairs(&mut self) -> usize {
         let mut count = 0;
         let (ends, _) = self.ends.as_chunks_mut::<2>();
-        for (index, pair) in (0..).zip(self.masses.as_chunks::<2>().0) {
-            let (Some(place), Some(end)) = (self.steps.get_mut(count), ends.get_mut(count)) else { break };
-            (*place, *end) = (index, *pair);
-            let both: u64 = zerocopy::transmute!(*pair);
+        let mut gather = |index, pair: [i32; 2]| {
+            let (Some(place), Some(end)) = (self.steps.get_mut(count), ends.get_mut(count)) else { return };
+            (*place, *end) = (index, pair);
+            let both: u64 = zerocopy::transmute!(pair);
             count += usize::from(both != 0);
+        };
+        // Most pairs are empty, and so are their neighbours.
+        let (fours, rest) = self.masses.as_chunks::<8>();
+        for (four, masses) in (0..).zip(fours) {
+            if masses.iter().fold(0, |any, mass| any | mass) != 0 {
+                for (index, pair) in (4 * four..).zip(masses.as_chunks::<2>().0) {
+                    gather(index, *pair);
+                }
+            }
+        }
+        for (index, pair) in (4 * fours.len() as i32..).zip(rest.as_chunks::<2>().0) {
+            gather(index, *pair);
         }
         count
     }
@@ -337,9 +353,10 @@ impl Scratch<'_> {
 
 #[inline(always)]
 fn add_pair(grid: &mut [i32], place: i32, pair: [i32; 2]) {
-    if let Some(cells) = grid.get_mut(place as usize..).and_then(<[i32]>::first_chunk_mut) {
-        let [a, b] = *cells;
-        *cells = [a + pair[0], b + pair[1]];
+    let place = place as u32 as usize;
+    if let Some([a, b]) = grid.get_mut(place..place.wrapping_add(2)) {
+        *a += pair[0];
+        *b += pair[1];
     }
 }
 
