@@ -69,6 +69,8 @@ pub fn scenes() -> Vec<Workload> {
         workload("crowded", longest(&seen_from(BESIDE, 240)), longest(&seen_from(VIEWPOINT, 240)), 8862, 985_791_943),
         // Everything falls into the same angle bin, every histogram is like its neighbour.
         workload("all_parallel", parallel(150), parallel(150), 1592, 1_073_736_867),
+        // Long segments at all angles through each other: no workload has fuller histograms.
+        workload("all_crossing", crossing(150), crossing(120), 24_370, 1_066_502_919),
     ]
 }
 
@@ -133,4 +135,18 @@ fn parallel(count: u16) -> Vec<Segment2> {
         Segment2::new(Point2::new(x, 140.0), Point2::new(x, 340.0), Polarity::LeftBrighter).expect("valid")
     };
     (0..count).map(upright).collect()
+}
+
+/// Segments from one side of the image to the opposite one, at all places and angles.
+fn crossing(count: u16) -> Vec<Segment2> {
+    let across = |index: u16| {
+        let (from, to) = (f32::from(index * 61 % 240), f32::from(index * 97 % 240));
+        let (start, end) = if index.is_multiple_of(2) {
+            (Point2::new(2.0 * from, 0.0), Point2::new(639.0 - 2.0 * to, 479.0))
+        } else {
+            (Point2::new(0.0, 2.0 * from), Point2::new(639.0, 479.0 - 2.0 * to))
+        };
+        Segment2::new(start, end, Polarity::LeftBrighter).expect("valid")
+    };
+    (0..count).map(across).collect()
 }

@@ -24,7 +24,7 @@ pub struct PanelRow {
 }
 
 impl PanelRow {
-    const EMPTY: Self = Self { roots: [[0; 2]; LANES] };
+    pub(super) const EMPTY: Self = Self { roots: [[0; 2]; LANES] };
 }
 
 /// Number of bin pairs that hold `bins` bins.
@@ -125,8 +125,13 @@ impl<'m> Panel<'m> {
         Self { rows }
     }
 
-    /// Fills the panel with the histograms about up to [`LANES`] of the `lines` that `builder` has loaded, from the
+    /// Replaces the panel by the histograms about up to [`LANES`] of the `lines` that `builder` has loaded, from the
     /// `first`-th on.
+    pub fn rebuild(&mut self, builder: &mut HistogramBuilder<'_>, lines: &[Line], first: usize) {
+        kernels::run(Fill { panel: self, builder, lines, first });
+    }
+
+    /// [`Self::rebuild`] within other work.
     #[inline(always)]
     pub(super) fn fill(&mut self, builder: &mut HistogramBuilder<'_>, lines: &[Line], first: usize) {
         self.rows.fill(PanelRow::EMPTY);
@@ -139,11 +144,22 @@ impl<'m> Panel<'m> {
             });
         }
     }
+}
 
-    /// The best coefficient in Q30 of `row` with a line of the panel; lanes left empty give 0.
+/// [`Panel::rebuild`] as work for any machine.
+struct Fill<'a, 'm, 'b> {
+    panel: &'a mut Panel<'m>,
+    builder: &'a mut HistogramBuilder<'b>,
+    lines: &'a [Line],
+    first: usize,
+}
+
+impl Work for Fill<'_, '_, '_> {
+    type Output = ();
+
     #[inline(always)]
-    pub(super) fn best_coefficient(&self, body: impl Body, row: &[BinPair]) -> i32 {
-        body.best_coefficient(row, self.rows)
+    fn run<B: Body>(self, _: B) {
+        self.panel.fill(self.builder, self.lines, self.first);
     }
 }
 
@@ -169,6 +185,65 @@ impl Work for Coefficient<'_> {
     fn run<B: Body>(self, body: B) -> i32 {
         body.best_coefficient(self.row, self.rows)
     }
+}
+
+/// Raises `best`, a number for each of `rows`, to the row's best coefficient in Q30 with a line of the `panels`; lanes left
+/// empty give 0.
+///
+/// Several panels together are faster than one after another.
+pub fn best_coefficients(rows: &RootRows<'_>, panels: &[Panel<'_>], best: &mut [i32]) {
+    kernels::run(Meet { rows, panels, best });
+}
+
+/// [`best_coefficients`] as work for any machine.
+struct Meet<'a, 'r, 'p> {
+    rows: &'a RootRows<'r>,
+    panels: &'a [Panel<'p>],
+    best: &'a mut [i32],
+}
+
+impl Work for Meet<'_, '_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<B: Body>(self, body: B) {
+        raise_best(body, self.rows, self.panels, self.best);
+    }
+}
+
+/// [`best_coefficients`] within other work: three panels at a time, rather two and two than three and one.
+#[inline(always)]
+pub(super) fn raise_best(body: impl Body, rows: &RootRows<'_>, panels: &[Panel<'_>], best: &mut [i32]) {
+    let mut rest = panels;
+    loop {
+        rest = match rest {
+            [] => return,
+            [a] => meet(body, rows, [a], &[], best),
+            [a, b] => meet(body, rows, [a, b], &[], best),
+            [a, b, _, _] => meet(body, rows, [a, b], &rest[2..], best),
+            [a, b, c, later @ ..] => meet(body, rows, [a, b, c], later, best),
+        };
+    }
+}
+
+/// Raises `best` to the best coefficients with `panels`; while they are met, some of the `later` ones are fetched, which
+/// are returned.
+#[inline(always)]
+fn meet<'a, 'p, const PANELS: usize>(
+    body: impl Body,
+    rows: &RootRows<'_>,
+    panels: [&Panel<'_>; PANELS],
+    later: &'a [Panel<'p>],
+    best: &mut [i32],
+) -> &'a [Panel<'p>] {
+    let panels = panels.map(|panel| &*panel.rows);
+    let mut next = later.iter().take(PANELS).flat_map(|panel| &*panel.rows);
+    let a_row = (PANELS * panels[0].len()).div_ceil(rows.count.max(1));
+    for (row, best) in rows.rows().zip(best) {
+        next.by_ref().take(a_row).for_each(|row| body.will_read(row));
+        *best = (*best).max(body.best_of_panels(row, panels));
+    }
+    later
 }
 
 #[cfg(test)]

@@ -14,7 +14,10 @@ mod bhattacharyya;
 mod kernels;
 mod view_score;
 
-pub use bhattacharyya::{BinPair, Panel, PanelRow, RootRows, best_coefficient};
-pub use kernels::LANES;
+pub use bhattacharyya::{BinPair, Panel, PanelRow, RootRows, best_coefficient, best_coefficients};
+#[cfg(edgeloc_body = "x86_64")]
+#[doc(hidden)]
+pub use kernels::limit_body;
 pub(crate) use kernels::{Body, Work, run};
+pub use kernels::{LANES, body_name};
 pub use view_score::{ViewScore, score_view};

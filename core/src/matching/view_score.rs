@@ -1,5 +1,6 @@
 //! How well a scene matches a view: the length-weighted mean of each scene line's best coefficient.
 
+use super::bhattacharyya::raise_best;
 use super::kernels::{self, Body, Work};
 use super::{LANES, Panel, RootRows};
 use crate::geometry::CapacityError;
@@ -58,9 +59,7 @@ impl Work for Score<'_, '_, '_, '_> {
         best.fill(0);
         for first in (0..view_lines.len()).step_by(LANES) {
             panel.fill(builder, view_lines, first);
-            for (row, best) in scene_rows.rows().zip(&mut *best) {
-                *best = (*best).max(panel.best_coefficient(body, row));
-            }
+            raise_best(body, scene_rows, core::slice::from_ref(&*panel), best);
         }
         let (mut weighted, mut weight) = (0_u64, 0_u64);
         for (line, best) in scene_lines.iter().zip(&*best) {

@@ -39,7 +39,7 @@ fn violations(folder: &str, manifest: &str) -> Vec<String> {
             "core" => None,
             "host-sim" => ours(&["edgeloc", "edgeloc-protocol"]),
             "tests/gate" => Some("the gate must report even when nothing else builds"),
-            "tests" | "benches" => None,
+            "tests" | "benches" | "benches/peers" => None,
             "boards/firmware" | "boards/protocol" => ours(&["edgeloc", "edgeloc-protocol"]),
             _ if folder.starts_with("boards/qemu-") => ours(&["edgeloc-firmware", "edgeloc-protocol", "edgeloc-qemu"])
                 .map(|_| "a board holds pins and memory: it goes through the firmware"),

@@ -15,6 +15,8 @@ const HALF: usize = LANES / 2;
 pub(super) struct Smlad;
 
 impl Body for Smlad {
+    const NAME: &'static str = "SMLAD";
+
     #[inline(always)]
     fn best_coefficient(self, row: &[BinPair], panel: &[PanelRow]) -> i32 {
         if row.is_empty() { 0 } else { best_of_half::<0>(row, panel).max(best_of_half::<HALF>(row, panel)) }

@@ -21,8 +21,40 @@ pub const LANES: usize = 16;
 
 /// A way to compute coefficients.
 pub(crate) trait Body: Copy {
+    /// What it is called.
+    const NAME: &'static str;
+
     /// The best coefficient in Q30 of one scene row with a panel's lines; 0 if none is positive.
     fn best_coefficient(self, row: &[BinPair], panel: &[PanelRow]) -> i32;
+
+    /// The best with the lines of several panels, as far as all of them go: what is read of the row serves them all.
+    #[inline(always)]
+    fn best_of_panels<const PANELS: usize>(self, row: &[BinPair], panels: [&[PanelRow]; PANELS]) -> i32 {
+        as_far_as_all_go(panels).into_iter().fold(0, |best, panel| best.max(self.best_coefficient(row, panel)))
+    }
+
+    /// Hints that a panel's row will soon be read.
+    #[inline(always)]
+    fn will_read(self, _: &PanelRow) {}
+}
+
+/// The panels' rows that all of them have.
+#[inline(always)]
+fn as_far_as_all_go<const PANELS: usize>(panels: [&[PanelRow]; PANELS]) -> [&[PanelRow]; PANELS] {
+    let shared = panels.iter().map(|panel| panel.len()).min().unwrap_or(0);
+    panels.map(|panel| panel.get(..shared).unwrap_or_default())
+}
+
+/// The row of each panel with that index, if all have it.
+#[cfg(edgeloc_body = "x86_64")]
+#[inline(always)]
+fn rows_at<const PANELS: usize>(panels: [&[PanelRow]; PANELS], index: u16) -> Option<[&PanelRow; PANELS]> {
+    let index = usize::from(index);
+    let mut rows = [&PanelRow::EMPTY; PANELS];
+    for (row, panel) in rows.iter_mut().zip(panels) {
+        *row = panel.get(index)?;
+    }
+    Some(rows)
 }
 
 /// Work that is compiled once for each body. Everything it calls has to be `inline(always)` to profit.
@@ -49,7 +81,23 @@ pub(crate) fn run<W: Work>(work: W) -> W::Output {
     work.run(Known)
 }
 #[cfg(edgeloc_body = "x86_64")]
+pub use x86_64::limit_body;
+#[cfg(edgeloc_body = "x86_64")]
 pub(crate) use x86_64::run;
+
+/// Name of the body that does the work on this machine, such as `AVX-512 VNNI`.
+#[must_use]
+pub fn body_name() -> &'static str {
+    struct Name;
+    impl Work for Name {
+        type Output = &'static str;
+
+        fn run<B: Body>(self, _: B) -> &'static str {
+            B::NAME
+        }
+    }
+    run(Name)
+}
 
 #[cfg(all(test, edgeloc_body = "x86_64"))]
 mod tests {
@@ -78,7 +126,15 @@ mod tests {
                 self.1.iter().map(keep).collect()
             };
             let panels: Vec<Vec<PanelRow>> = (0..LANES).map(alone).chain([self.1.to_vec()]).collect();
-            self.0.iter().flat_map(|row| panels.iter().map(move |panel| body.best_coefficient(row, panel))).collect()
+            let mut found = Vec::new();
+            for row in self.0 {
+                found.extend(panels.iter().map(|panel| body.best_coefficient(row, panel)));
+                // Several at a time, of one length and of two.
+                let three = |panels: &[Vec<PanelRow>]| body.best_of_panels(row, [&panels[0], &panels[1], &panels[2]]);
+                found.extend(panels.windows(3).map(three));
+                found.push(body.best_of_panels(row, [&panels[0][..30], &panels[LANES]]));
+            }
+            found
         }
     }
 

@@ -14,6 +14,8 @@ use core::arch::aarch64::{
 pub(super) struct Neon;
 
 impl Body for Neon {
+    const NAME: &'static str = "NEON";
+
     #[inline(always)]
     fn best_coefficient(self, row: &[BinPair], panel: &[PanelRow]) -> i32 {
         // SAFETY: this is compiled only where all code may use NEON.

@@ -8,6 +8,8 @@ use crate::matching::{BinPair, PanelRow};
 pub(super) struct Portable;
 
 impl Body for Portable {
+    const NAME: &'static str = "portable";
+
     #[inline(always)]
     fn best_coefficient(self, row: &[BinPair], panel: &[PanelRow]) -> i32 {
         let mut sums = [0_i32; LANES];

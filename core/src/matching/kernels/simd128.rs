@@ -9,6 +9,8 @@ use core::arch::wasm32::{i32x4_add, i32x4_dot_i16x8, i32x4_splat, v128};
 pub(super) struct Simd128;
 
 impl Body for Simd128 {
+    const NAME: &'static str = "WebAssembly SIMD";
+
     #[inline(always)]
     fn best_coefficient(self, row: &[BinPair], panel: &[PanelRow]) -> i32 {
         let mut sums = [i32x4_splat(0); LANES / 4];

@@ -9,7 +9,7 @@ const KNOWN: u8 = 1;
 const AVX2: u8 = 2;
 const AVX512: u8 = 4;
 
-/// What was found, 0 before anyone asked. Any thread finds the same, so no order is needed.
+/// What was found, 0 before anyone asked. Any thread may use any of it, so no order is needed.
 static FOUND: AtomicU8 = AtomicU8::new(0);
 
 pub(super) fn has_avx2() -> bool {
@@ -18,6 +18,12 @@ pub(super) fn has_avx2() -> bool {
 
 pub(super) fn has_avx512_vnni() -> bool {
     found() & AVX512 != 0
+}
+
+/// Finds of what the machine has only what is allowed, from now on.
+pub(super) fn limit(allows_avx512: bool, allows_avx2: bool) {
+    let allowed = KNOWN | if allows_avx2 { AVX2 } else { 0 } | if allows_avx512 { AVX512 } else { 0 };
+    FOUND.store(ask() & allowed, Ordering::Relaxed);
 }
 
 fn found() -> u8 {

@@ -7,10 +7,18 @@ mod avx512;
 mod detection;
 mod sse2;
 
-use super::Work;
+use super::{Body, PanelRow, Work};
 use avx2::Avx2;
 use avx512::Avx512;
+use core::arch::x86_64::{_MM_HINT_T1, _mm_prefetch};
 use sse2::Sse2;
+
+/// Asks for a panel's row to be brought near.
+#[inline(always)]
+fn prefetch(row: &PanelRow) {
+    // SAFETY: every x86-64 has SSE, and a hint reads nothing.
+    unsafe { _mm_prefetch::<_MM_HINT_T1>(core::ptr::from_ref(row).cast()) };
+}
 
 /// Does `work` with the best body that the machine has.
 pub(crate) fn run<W: Work>(work: W) -> W::Output {
@@ -23,6 +31,13 @@ pub(crate) fn run<W: Work>(work: W) -> W::Output {
     } else {
         work.run(Sse2)
     }
+}
+
+/// Does without bodies above `name` from now on, in the whole process; returns the name of the body that is left. For
+/// benchmarks: all bodies give the same bits.
+pub fn limit_body(name: &str) -> &'static str {
+    detection::limit(name == Avx512::NAME, name == Avx512::NAME || name == Avx2::NAME);
+    super::body_name()
 }
 
 #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
