@@ -70,10 +70,12 @@ impl Attempt {
         let parameters = setting.parameters().into_iter().collect();
         let headings: Vec<_> = looks.iter().map(|look| look.heading).collect();
         let images = replay.look_images(&headings);
+        let robot = site.calibrated_rig(&setting.scenario.uncertainty, setting.scenario.seed, record.map);
         let facts = TrialFacts {
             record: &record,
             parameters: &parameters,
             config,
+            robot: &robot,
             map: replay.map().into_diagnostic()?,
             plan: &plan,
             looks: &looks,

@@ -9,20 +9,21 @@
 
 use crate::camera::{StereoObservation, move_pieces};
 use edgeloc::geometry::StereoRig;
-use edgeloc::stereo::{CalibrationError, Rectification, StereoParameters};
+use edgeloc::stereo::{CalibrationError, ParameterVector, Rectification, StereoParameters};
 
 /// A rig and what its robot does to its images.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CalibratedRig {
     rig: StereoRig,
     rectification: Option<Rectification>,
+    errors: ParameterVector,
 }
 
 impl CalibratedRig {
     /// A rig whose robot knows it exactly.
     #[must_use]
-    pub const fn exact(rig: StereoRig) -> Self {
-        Self { rig, rectification: None }
+    pub fn exact(rig: StereoRig) -> Self {
+        Self { rig, rectification: None, errors: ParameterVector::zeros() }
     }
 
     /// A rig whose robot believes these parameters.
@@ -31,14 +32,22 @@ impl CalibratedRig {
     /// When they can't be those of two cameras side by side.
     pub fn believed(rig: StereoRig, parameters: &StereoParameters) -> Result<Self, CalibrationError> {
         let rectification = Rectification::new(parameters, &rig.camera)?;
+        let errors = parameters.to_vector() - StereoParameters::ideal(&rig).to_vector();
         let rig = StereoRig { baseline_m: rectification.baseline_m() as f32, ..rig };
-        Ok(Self { rig, rectification: Some(rectification) })
+        Ok(Self { rig, rectification: Some(rectification), errors })
     }
 
     /// The rig that the robot triangulates with and states in its map.
     #[must_use]
     pub const fn rig(&self) -> &StereoRig {
         &self.rig
+    }
+
+    /// What each parameter that the robot believes is off the truth, in the order and units of
+    /// [`PARAMETERS`](edgeloc::stereo::PARAMETERS).
+    #[must_use]
+    pub const fn errors(&self) -> &ParameterVector {
+        &self.errors
     }
 
     /// Moves the segments of both images to where the robot believes that they lie; a segment by its ends, though a
@@ -96,6 +105,8 @@ mod tests {
         let mut parameters = StereoParameters::ideal(&RIG);
         parameters.translation_m[0] *= 1.1;
         let robot = CalibratedRig::believed(RIG, &parameters).expect("side by side");
+        let greatest = robot.errors().iter().fold(0.0, |greatest: f64, error| greatest.max(error.abs()));
+        assert!((greatest - 0.012).abs() < 1e-6, "a tenth of 12 cm is all that is off");
         assert!((depth_m(&robot) - 2.2).abs() < 1e-3 && (robot.rig().baseline_m - 0.132).abs() < 1e-6);
 
         let mut parameters = StereoParameters::ideal(&RIG);

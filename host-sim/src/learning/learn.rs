@@ -109,7 +109,7 @@ mod tests {
     use edgeloc::stereo::StereoParameters;
 
     const RIG: StereoRig = StereoRig::reference();
-    const ROBOT: CalibratedRig = CalibratedRig::exact(RIG);
+    static ROBOT: std::sync::LazyLock<CalibratedRig> = std::sync::LazyLock::new(|| CalibratedRig::exact(RIG));
 
     /// Posts in a ring around the origin, 1 to 6 m away, with no surfaces; each post is one vertical edge.
     fn posts() -> WireframeWorld {

@@ -8,10 +8,12 @@ mod verified;
 use super::document::{document, inline};
 use super::place_evidence::{PlaceEvidence, place_evidence};
 use super::{FloorPlan, LookExplanation, answer_words};
+use crate::learning::CalibratedRig;
 use crate::monte_carlo::{LookImages, SourceEffect, TrialRecord};
 use edgeloc::database::{NodeId, TopologicalDatabase};
 use edgeloc::geometry::Point2;
 use edgeloc::localize::{LocalizerConfig, VerificationConfig};
+use edgeloc::stereo::PARAMETERS;
 use histograms::histograms;
 use images::{both_images, model_over_scene};
 use maud::{Markup, html};
@@ -27,6 +29,8 @@ pub struct TrialFacts<'a> {
     pub parameters: &'a BTreeMap<String, String>,
     /// What the localiser worked with.
     pub config: LocalizerConfig,
+    /// The rig as the robot believes it.
+    pub robot: &'a CalibratedRig,
     /// The map of the trial.
     pub map: TopologicalDatabase<'a>,
     /// The building, with the nodes.
@@ -74,6 +78,12 @@ pub fn trial_page(facts: &TrialFacts<'_>) -> String {
                 }
             }
             div.wide { (inline(&score_strips(facts.looks, record))) }
+            details {
+                summary { "What the robot's calibration is off" }
+                table { @for (facts, error) in PARAMETERS.iter().zip(facts.robot.errors().iter()) {
+                    tr { td { (facts.name) } td { (facts.symbol) } td { (format!("{error:+.6} {}", facts.unit)) } }
+                } }
+            }
             details {
                 summary { "Parameters as they were applied" }
                 dl { @for (key, value) in facts.parameters { dt { (key) } dd { (value) } } }
@@ -235,6 +245,7 @@ mod tests {
             record: &record,
             parameters: &BTreeMap::new(),
             config,
+            robot: &CalibratedRig::exact(StereoRig::reference()),
             map,
             plan: &FloorPlan::new(None, None, &places),
             looks: &[look],
@@ -257,6 +268,8 @@ mod tests {
             "class=\"answer\"",
             "class=\"sight\"",
             "true pose, by the model of node",
+            "What the robot's calibration is off",
+            "+0.000000",
         ] {
             assert!(page.contains(part), "the page lacks {part}");
         }
