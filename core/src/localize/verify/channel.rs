@@ -10,9 +10,7 @@ const CENTERS: [f32; 3] = [0.414_213_56, 1.0, 2.414_213_6];
 
 /// The channel of a direction.
 pub(super) fn channel_of(dx: f32, dy: f32) -> usize {
-    let (x, y, is_falling) = folded(dx, dy);
-    let sector = BORDERS.iter().filter(|border| y > **border * x).count();
-    unfolded(sector, is_falling)
+    channel_in_lane(dx, dy) as usize
 }
 
 /// The channel of a direction, without a branch, as a vector of them wants it.
