@@ -78,15 +78,16 @@ pub fn state_self_agreement(bytes: &mut [u8], agreement: f32) -> Result<(), Stat
     }
     let length = TopologicalDatabase::open(bytes).map_err(StateError::Open)?.byte_len();
     let database = &mut bytes[..length];
-    let mut state = |change: &dyn Fn(&mut Header, u32)| {
-        let checksum = format::checksum(database);
-        if let Ok((header, _)) = Header::mut_from_prefix(database) {
-            change(header, checksum);
-        }
-    };
-    state(&|header, _| header.self_agreement = agreement.into());
-    state(&|header, checksum| header.crc = checksum.into());
+    change_header(database, |header| header.self_agreement = agreement.into());
+    let checksum = format::checksum(database);
+    change_header(database, |header| header.crc = checksum.into());
     Ok(())
+}
+
+fn change_header(database: &mut [u8], change: impl FnOnce(&mut Header)) {
+    if let Ok((header, _)) = Header::mut_from_prefix(database) {
+        change(header);
+    }
 }
 
 /// Why an agreement can't be stated.
