@@ -9,10 +9,14 @@ use crate::geometry::{Angle, Heading, Point2};
 pub enum Decision {
     /// The robot is at this place.
     Localized(Localized),
-    /// Not sure yet: turn, look and observe again.
+    /// Not sure yet: turn, drive, look and observe again. A caller that can't, or not all the way, reports in the next
+    /// look what it did instead.
     LookAgain {
-        /// The turn asked for. A caller that can't make it reports what it did instead.
+        /// The turn asked for.
         turn: Angle,
+        /// How far to drive straight ahead after the turn, where there is room \[m\]; 0 where a turn may do, and always
+        /// for a robot that reports no motion.
+        step_m: f32,
     },
     /// The localiser can't tell.
     Unknown {

@@ -1,6 +1,7 @@
 //! What the robot hands to the localiser after each look around.
 
 use crate::geometry::{Angle, Heading, Point2, Scene};
+use crate::math;
 
 /// One look: what was seen, and what is known of how the camera stood.
 #[derive(Debug, Clone, Copy)]
@@ -53,5 +54,12 @@ impl Motion {
             step_m: Point2::new(0.0, 0.0),
             step_standard_deviation_m: 0.0,
         }
+    }
+
+    /// A turn, and after it a way straight ahead \[m\], taken as exact: what a [`super::Decision::LookAgain`] asks for.
+    #[must_use]
+    pub fn exact(turn: Angle, ahead_m: f32) -> Self {
+        let (sin, cos) = math::sin_cos(turn.radians());
+        Self { step_m: Point2::new(ahead_m * cos, ahead_m * sin), ..Self::exact_turn(turn) }
     }
 }

@@ -22,4 +22,4 @@ pub use paper::lines_to_match;
 pub use prediction::predict_view;
 pub use rivals::{Rival, Rivals};
 pub use score_margin::ScoreMargin;
-pub use verify::{Evidence, PoseCheck, VerificationConfig};
+pub use verify::{Evidence, NextLook, PoseCheck, VerificationConfig};

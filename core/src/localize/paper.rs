@@ -106,7 +106,7 @@ impl<'m> PaperLocalizer<'m> {
                 Decision::Localized(Localized { node, pose: None, probability: None })
             }
             _ if has_looked_enough => Decision::Unknown { reason: UnknownReason::SceneTooPoor },
-            _ => Decision::LookAgain { turn: self.config.turn },
+            _ => Decision::LookAgain { turn: self.config.turn, step_m: 0.0 },
         }
     }
 }

@@ -68,8 +68,8 @@ impl Attempt {
             drawings.push(path);
         }
         let parameters = setting.parameters().into_iter().collect();
-        let headings: Vec<_> = looks.iter().map(|look| look.heading).collect();
-        let images = replay.look_images(&headings);
+        let poses: Vec<_> = looks.iter().map(|look| look.pose_true).collect();
+        let images = replay.look_images(&poses);
         let robot = site.calibrated_rig(&setting.scenario.uncertainty, setting.scenario.seed, record.map);
         let facts = TrialFacts {
             record: &record,

@@ -4,10 +4,10 @@ use super::{Site, TruePose};
 use crate::camera::{self, StereoObservation};
 use crate::uncertainty::{NoiseKey, Sources};
 use crate::world::ViewpointVisibility;
-use edgeloc::geometry::{Heading, Segment2};
-use edgeloc::localize::HeadingPrior;
+use edgeloc::geometry::{Angle, Heading, Point2, Segment2};
+use edgeloc::localize::{HeadingPrior, Motion};
 
-/// The looks of one trial from one pose: the same for every row that turns the same through the same sources.
+/// The looks of one trial: the same for every row that turns and moves the same through the same sources.
 ///
 /// Rows that turn differently share what is visible from the pose; rows with other sources share the clean images too.
 #[derive(Debug)]
@@ -16,32 +16,38 @@ pub(super) struct Looks<'s> {
     seed: u64,
     trial: u32,
     map: u32,
+    places: Vec<Place<'s>>,
+    scenes: Vec<SeenScene<'s>>,
+}
+
+/// Where the robot looks around from.
+#[derive(Debug)]
+struct Place<'s> {
+    position: Point2,
     visibility: ViewpointVisibility<'s>,
     clean: Vec<(Heading, StereoObservation)>,
-    scenes: Vec<SeenScene<'s>>,
 }
 
 /// The scene of one look.
 #[derive(Debug)]
 struct SeenScene<'s> {
     look: usize,
-    heading: Heading,
+    pose: TruePose,
     sources: &'s Sources,
     segments: Vec<Segment2>,
 }
 
 impl<'s> Looks<'s> {
-    pub(super) fn new(site: &'s Site, seed: u64, trial: u32, map: u32, start: TruePose) -> Self {
-        let visibility = site.viewpoint(start.position);
-        Self { site, seed, trial, map, visibility, clean: Vec::new(), scenes: Vec::new() }
+    pub(super) const fn new(site: &'s Site, seed: u64, trial: u32, map: u32) -> Self {
+        Self { site, seed, trial, map, places: Vec::new(), scenes: Vec::new() }
     }
 
-    /// The scene of the `look`-th look, from 0, with the optical axis along `heading`, through `sources`.
-    pub(super) fn scene(&mut self, look: usize, heading: Heading, sources: &'s Sources) -> &[Segment2] {
-        let is_asked = |seen: &SeenScene<'_>| seen.look == look && seen.heading == heading && seen.sources == sources;
+    /// The scene of the `look`-th look, from 0, from `pose`, through `sources`.
+    pub(super) fn scene(&mut self, look: usize, pose: TruePose, sources: &'s Sources) -> &[Segment2] {
+        let is_asked = |seen: &SeenScene<'_>| seen.look == look && seen.pose == pose && seen.sources == sources;
         let index = self.scenes.iter().position(is_asked).unwrap_or_else(|| {
-            let segments = self.take(look, heading, sources);
-            self.scenes.push(SeenScene { look, heading, sources, segments });
+            let segments = self.take(look, pose, sources);
+            self.scenes.push(SeenScene { look, pose, sources, segments });
             self.scenes.len() - 1
         });
         &self.scenes[index].segments
@@ -52,22 +58,34 @@ impl<'s> Looks<'s> {
         sources.compass_reading(heading, &self.noise_key(look))
     }
 
-    fn take(&mut self, look: usize, heading: Heading, sources: &Sources) -> Vec<Segment2> {
-        let mut observation = self.clean(heading).clone();
+    /// What odometry tells in the `look`-th look, from 0, of a turn and a way straight ahead after it \[m\].
+    pub(super) fn odometry_reading(&self, look: usize, turn: Angle, ahead_m: f32, sources: &Sources) -> Option<Motion> {
+        sources.odometry_reading(turn, ahead_m, &self.noise_key(look))
+    }
+
+    fn take(&mut self, look: usize, pose: TruePose, sources: &Sources) -> Vec<Segment2> {
+        let mut observation = self.clean(pose).clone();
         sources.apply(&mut observation, &self.noise_key(look));
         self.site.calibrated_rig(sources, self.seed, self.map).rectify(&mut observation);
         camera::left_segments(&observation)
     }
 
-    /// Both images without noise, with the optical axis along `heading`.
-    pub(super) fn clean(&mut self, heading: Heading) -> &StereoObservation {
-        let known = self.clean.iter().position(|(known, _)| *known == heading);
+    /// Both images without noise, from `pose`.
+    pub(super) fn clean(&mut self, pose: TruePose) -> &StereoObservation {
+        let TruePose { position, heading } = pose;
+        let known = self.places.iter().position(|place| place.position == position);
         let index = known.unwrap_or_else(|| {
-            let observation = camera::observe(&self.site.rig, &mut self.visibility, heading);
-            self.clean.push((heading, observation));
-            self.clean.len() - 1
+            let visibility = self.site.viewpoint(position);
+            self.places.push(Place { position, visibility, clean: Vec::new() });
+            self.places.len() - 1
         });
-        &self.clean[index].1
+        let Place { visibility, clean, .. } = &mut self.places[index];
+        let known = clean.iter().position(|(known, _)| *known == heading);
+        let index = known.unwrap_or_else(|| {
+            clean.push((heading, camera::observe(&self.site.rig, visibility, heading)));
+            clean.len() - 1
+        });
+        &clean[index].1
     }
 
     /// Which draw of the noise the `look`-th look, from 0, has.

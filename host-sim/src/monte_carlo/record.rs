@@ -41,7 +41,7 @@ pub struct TrialRecord {
     pub true_y_m: f32,
     /// True heading at the first look \[degrees\], counter-clockwise from +x.
     pub true_heading_deg: f32,
-    /// The node nearest to the true position.
+    /// The node nearest to the true position at the last look.
     pub nearest_node: u32,
     /// The second nearest node (equal to the nearest in a map of one node).
     pub second_nearest_node: u32,
@@ -73,6 +73,8 @@ pub struct TrialRecord {
     /// The rivals named instead of an answer, the likeliest first: `node@x,y:probability`, positions in metres, with
     /// blanks between them.
     pub rivals: Option<String>,
+    /// Way driven in exploratory moves \[m\]; the answer is of where the robot stands after them.
+    pub driven_m: f32,
     /// Looks taken.
     pub looks: u32,
     /// Segments of all looks together that entered the matching.

@@ -6,7 +6,6 @@ use super::trial::Trial;
 use super::{LookEvent, LookImages, RunError, Site, TrialRecord, TruePose, draw_start};
 use crate::scenario::Setting;
 use edgeloc::database::TopologicalDatabase;
-use edgeloc::geometry::Heading;
 
 /// A trial of a setting, or a robot put down at a pose of one's own, with the map it has.
 #[derive(Debug)]
@@ -59,20 +58,20 @@ impl<'s> Replay<'s> {
         Ok(trial.run(database, &mut memory, &mut self.looks(), watch))
     }
 
-    /// The images of each look again, for the true `headings` at which the robot looked.
+    /// The images of each look again, for the true `poses` from which the robot looked.
     #[must_use]
-    pub fn look_images(&self, headings: &[Heading]) -> Vec<LookImages> {
+    pub fn look_images(&self, poses: &[TruePose]) -> Vec<LookImages> {
         let sources = &self.setting.scenario.uncertainty;
         let robot = self.site.calibrated_rig(sources, self.setting.scenario.seed, self.map);
         let mut looks = self.looks();
-        let images = |(look, heading): (usize, &Heading)| {
-            LookImages::perturbed(looks.clean(*heading).clone(), sources, &looks.noise_key(look), &robot)
+        let images = |(look, pose): (usize, &TruePose)| {
+            LookImages::perturbed(looks.clean(*pose).clone(), sources, &looks.noise_key(look), &robot)
         };
-        headings.iter().enumerate().map(images).collect()
+        poses.iter().enumerate().map(images).collect()
     }
 
     fn looks(&self) -> Looks<'s> {
-        Looks::new(self.site, self.setting.scenario.seed, self.trial, self.map, self.start)
+        Looks::new(self.site, self.setting.scenario.seed, self.trial, self.map)
     }
 }
 

@@ -129,7 +129,7 @@ fn run_block(sites: &Sites, part: &Part<'_>, map: u32, on_trial: &(dyn Fn(TimedT
         let Some(&any) = rows.first() else { return };
         let (site, Setting { row, scenario }) = (sites.of_row(any), &settings[any]);
         let start = draw_start(site, scenario, row.start, *trial);
-        let mut looks = Looks::new(site, scenario.seed, *trial, map, start);
+        let mut looks = Looks::new(site, scenario.seed, *trial, map);
         for &row in rows {
             // A map is missing only when the run was told to stop before it was learned.
             let Some((database, map_bytes)) = maps[row].filter(|_| !(part.should_stop)()) else { return };

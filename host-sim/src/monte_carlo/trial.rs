@@ -4,10 +4,11 @@ use super::looks::Looks;
 use super::{Outcome, Site, TrialRecord, TruePose, UnknownKind};
 use crate::scenario::{Setting, Start};
 use edgeloc::database::{NodeId, TopologicalDatabase};
-use edgeloc::geometry::{Angle, Heading, Scene, Segment2};
+use edgeloc::geometry::{Angle, Heading, Point2, Scene, Segment2};
 use edgeloc::localize::{
-    Decision, HeadingPrior, Localizer, Look, Motion, ObserveError, Rival, Rivals, StartError, UnknownReason,
+    Decision, HeadingPrior, Localizer, Look, ObserveError, Rival, Rivals, StartError, UnknownReason,
 };
+use edgeloc::math;
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
@@ -22,8 +23,8 @@ const NEAR_TIE_M: f32 = 0.5;
 /// What happened at one look, for those who watch a trial.
 #[derive(Debug)]
 pub struct LookEvent<'a> {
-    /// True heading of the optical axis.
-    pub heading: Heading,
+    /// Where the robot truly is.
+    pub pose: TruePose,
     /// What the compass told of it, if there is one.
     pub compass: Option<HeadingPrior>,
     /// The segments that the robot saw.
@@ -83,13 +84,13 @@ impl<'s> Trial<'s> {
         mut watch: impl FnMut(&LookEvent<'_>),
     ) -> Result<(), StartError> {
         let mut localizer = Localizer::new(database, &self.setting.localizer_config(), memory)?;
-        let (mut heading, mut motion) = (self.start.heading, None);
+        let (mut pose, mut motion) = (self.start, None);
         loop {
             let was_candidate: Vec<bool> =
                 localizer.candidates().scores().iter().map(|node| node.is_candidate()).collect();
             let (look, sources) = (record.looks as usize, &self.setting.scenario.uncertainty);
-            let compass = looks.compass_reading(look, heading, sources);
-            let scene = looks.scene(look, heading, sources);
+            let compass = looks.compass_reading(look, pose.heading, sources);
+            let scene = looks.scene(look, pose, sources);
 
             let started = Instant::now();
             let decision =
@@ -100,7 +101,7 @@ impl<'s> Trial<'s> {
             record.scene_segments += localizer.scene_segment_count() as u32;
             record.scored_nodes += was_candidate.iter().filter(|is_candidate| **is_candidate).count() as u32;
             watch(&LookEvent {
-                heading,
+                pose,
                 compass,
                 scene,
                 was_candidate: &was_candidate,
@@ -109,12 +110,16 @@ impl<'s> Trial<'s> {
                 localizer_time,
             });
             match decision {
-                Ok(Decision::LookAgain { turn }) => {
-                    heading = heading.turned(turn).expect("a checked scenario turns by a finite angle");
-                    motion = Some(Motion::exact_turn(turn));
+                Ok(Decision::LookAgain { turn, step_m }) => {
+                    let heading = pose.heading.turned(turn).expect("a checked scenario turns by a finite angle");
+                    // The base stops at what is in its way.
+                    let ahead_m = self.site.free_space.free_way_m(pose.position, heading, step_m);
+                    motion = looks.odometry_reading(look + 1, turn, ahead_m, sources);
+                    pose = TruePose { position: ahead(pose.position, heading, ahead_m), heading };
+                    record.driven_m += ahead_m;
                 }
                 last => {
-                    self.record_end(record, heading, &last, &localizer, &was_candidate);
+                    self.record_end(record, pose, &last, &localizer, &was_candidate);
                     return Ok(());
                 }
             }
@@ -145,6 +150,7 @@ impl<'s> Trial<'s> {
             is_near_tie: false,
             unknown_kind: None,
             rivals: None,
+            driven_m: 0.0,
             looks: 0,
             scene_segments: 0,
             scored_nodes: 0,
@@ -158,28 +164,30 @@ impl<'s> Trial<'s> {
     }
 
     /// Whether one of the rivals is where the robot is.
-    fn is_among(&self, rivals: &Rivals, nearest_node: u32) -> bool {
-        let is_here = |rival: &Rival| {
-            rival.node.0 == nearest_node || rival.position.distance(self.start.position) <= SAME_PLACE_M
-        };
+    fn is_among(&self, rivals: &Rivals, position: Point2, nearest_node: u32) -> bool {
+        let is_here =
+            |rival: &Rival| rival.node.0 == nearest_node || rival.position.distance(position) <= SAME_PLACE_M;
         self.setting.row.start != Start::Unlearned && rivals.iter().any(is_here)
     }
 
     fn record_end(
         &self,
         record: &mut TrialRecord,
-        heading: Heading,
+        TruePose { position, heading }: TruePose,
         decision: &Result<Decision, ObserveError>,
         localizer: &Localizer<'_>,
         was_candidate: &[bool],
     ) {
+        // The answer is of where the robot stands now.
+        [record.nearest_node, record.second_nearest_node] = self.site.two_nearest_nodes(position);
+        record.nearest_node_distance_m = self.site.nodes[record.nearest_node as usize].distance(position);
         match decision {
             Ok(Decision::Localized(localized)) => {
                 record.outcome = Outcome::Localized;
                 record.answered_node = Some(localized.node.0);
                 let answered = self.site.nodes.get(localized.node.0 as usize);
-                record.answer_distance_m = answered.map(|node| node.distance(self.start.position));
-                record.pose_error_m = localized.pose.map(|pose| pose.position.distance(self.start.position));
+                record.answer_distance_m = answered.map(|node| node.distance(position));
+                record.pose_error_m = localized.pose.map(|pose| pose.position.distance(position));
                 record.heading_error_deg = localized.pose.map(|pose| {
                     let error_rad = pose.heading.angle().radians() - heading.angle().radians();
                     Angle::from_radians(error_rad).wrapped().degrees()
@@ -191,7 +199,7 @@ impl<'s> Trial<'s> {
                 record.unknown_kind = Some(kind_of(reason));
                 if let UnknownReason::Indistinguishable(rivals) = reason {
                     record.rivals = Some(rivals_in_words(rivals)).filter(|words| !words.is_empty());
-                    record.is_truth_named = self.is_among(rivals, record.nearest_node);
+                    record.is_truth_named = self.is_among(rivals, position, record.nearest_node);
                 }
             }
             // A look more is never the last decision.
@@ -220,6 +228,12 @@ impl<'s> Trial<'s> {
         record.truth_score =
             nearest.into_iter().filter(|node| was_candidate[*node as usize]).map(score_of).reduce(f64::max);
     }
+}
+
+/// The point `ahead_m` from `position` along `heading`.
+fn ahead(position: Point2, heading: Heading, ahead_m: f32) -> Point2 {
+    let (sin, cos) = math::sin_cos(heading.angle().radians());
+    Point2::new(position.x + ahead_m * cos, position.y + ahead_m * sin)
 }
 
 /// Why there is no answer, without the details.

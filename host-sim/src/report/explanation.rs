@@ -4,7 +4,7 @@
 
 use super::FloorPlan;
 use super::drawing::{drawing, line, text, tidy, tooltip};
-use crate::monte_carlo::{LookEvent, TrialRecord};
+use crate::monte_carlo::{LookEvent, TrialRecord, TruePose};
 use edgeloc::geometry::{Angle, Heading, PinholeCamera, Point2, Polarity, Segment2};
 use edgeloc::localize::{Decision, LocalizerConfig, UnknownReason};
 use serde::Serialize;
@@ -50,9 +50,9 @@ pub struct LookExplanation {
     /// The segments seen.
     #[serde(skip)]
     pub scene: Vec<Segment2>,
-    /// True heading of the optical axis.
+    /// The true pose.
     #[serde(skip)]
-    pub heading: Heading,
+    pub pose_true: TruePose,
     /// What the compass told of it; the truth without a compass.
     #[serde(skip)]
     pub compass: Heading,
@@ -136,13 +136,16 @@ impl LookExplanation {
                 let how_sure = probability.map(|probability| format!(", probability {:.1} %", 100.0 * probability));
                 format!("at node {}{}{}", place.node.0, pose.map(at).unwrap_or_default(), how_sure.unwrap_or_default())
             }
-            Ok(Decision::LookAgain { turn }) => format!("look again after a turn of {:.0} degrees", turn.degrees()),
+            Ok(Decision::LookAgain { turn, step_m }) => {
+                let step = if *step_m > 0.0 { format!(" and {step_m:.2} m ahead") } else { String::new() };
+                format!("look again after a turn of {:.0} degrees{step}", turn.degrees())
+            }
             Ok(Decision::Unknown { reason }) => format!("can't tell: {reason}"),
             Err(error) => format!("refused: {error}"),
         };
         Self {
             look,
-            heading_deg: f64::from(event.heading.angle().degrees()),
+            heading_deg: f64::from(event.pose.heading.angle().degrees()),
             compass_deg: event.compass.map(|told| f64::from(told.mean.angle().degrees())),
             seen_segments: event.scene.len(),
             used_segments: event.localizer.scene_segment_count(),
@@ -153,8 +156,8 @@ impl LookExplanation {
             probability,
             rivals,
             scene: event.scene.to_vec(),
-            heading: event.heading,
-            compass: event.compass.map_or(event.heading, |told| told.mean),
+            pose_true: event.pose,
+            compass: event.compass.map_or(event.pose.heading, |told| told.mean),
             compass_spread: event.compass.map_or(Angle::from_degrees(180.0), |told| told.standard_deviation),
         }
     }
@@ -266,7 +269,7 @@ impl LookExplanation {
                 marks.append(Circle::new().set("class", "truth").set("cx", x).set("cy", y).set("r", 14));
             }
         }
-        let place = Point2::new(record.true_x_m, record.true_y_m);
+        let place = self.pose_true.position;
         plan.canvas().add(plan.background()).add(sight(plan, place, self.heading_deg)).add(marks)
     }
 

@@ -58,7 +58,7 @@ pub(super) struct PlaceEvidence {
 /// The heading at a look, by the compass at the first look and the turns since.
 pub(super) fn told_heading(looks: &[LookExplanation], look: &LookExplanation, error: Angle) -> Heading {
     let Some(first) = looks.first() else { return look.compass };
-    let turned = look.heading.angle().radians() - first.heading.angle().radians();
+    let turned = look.pose_true.heading.angle().radians() - first.pose_true.heading.angle().radians();
     first.compass.turned(Angle::from_radians(turned + error.radians())).unwrap_or(look.compass)
 }
 
@@ -81,7 +81,7 @@ pub(super) fn place_evidence(
     let cell_m = reach_m / CELLS_IN_REACH;
     let mut checks = Checks { checks, cell_m, spread_rad: first.compass_spread.radians() };
     let mut grid = grid(&nodes, reach_m, cell_m);
-    let own_error = Angle::from_radians(first.heading.angle().radians() - first.compass.angle().radians()).wrapped();
+    let own_error = Angle::from_radians(first.pose_true.heading.angle().radians() - first.compass.angle().radians()).wrapped();
     let (mut seen_q4, mut segments, mut found) = (0, 0, Vec::new());
     for (index, look) in looks.iter().enumerate() {
         seen_q4 += seen_length_q4(look, map, config);

@@ -1,7 +1,7 @@
 //! A made-up run for tests of drawings and tables.
 
 use crate::learning::{SightCoverage, Squares};
-use crate::monte_carlo::{Outcome, TrialRecord};
+use crate::monte_carlo::{TruePose, Outcome, TrialRecord};
 use crate::random::Stream;
 use crate::report::{FreeCells, LookExplanation, Manifest, RunResults, RunTimings, Summary, WorldFacts};
 use crate::scenario::{Scenario, Start};
@@ -87,6 +87,7 @@ fn record(stream: &mut Stream, row: &str, start: Start, trial: u32, nodes: &[Poi
         is_near_tie: false,
         unknown_kind: None,
         rivals: None,
+        driven_m: 0.0,
         looks: 1 + stream.index(if is_success { 4 } else { 12 }) as u32,
         scene_segments: 200,
         scored_nodes: 80,
@@ -160,7 +161,7 @@ pub(crate) fn look_at_posts() -> LookExplanation {
         probability: None,
         rivals: Vec::new(),
         scene,
-        heading: Heading::default(),
+        pose_true: TruePose { position: Point2::default(), heading: Heading::default() },
         compass: Heading::default(),
         compass_spread: Angle::default(),
     }

@@ -2,7 +2,7 @@
 
 use super::decimal;
 use edgeloc::geometry::Angle;
-use edgeloc::localize::{LocalizerConfig, VerificationConfig};
+use edgeloc::localize::{LocalizerConfig, NextLook, VerificationConfig};
 use edgeloc::pgh::{DistanceKind, PghShape};
 use serde::{Deserialize, Serialize};
 
@@ -120,20 +120,46 @@ pub struct VerificationSettings {
     pub refined: u16,
     /// Hypotheses posed most closely.
     pub finalists: u16,
+    /// Where to look next: "predicted", the view that tells rivals apart best, or "fixed", a turn of `turn_deg` on.
+    pub next_look: NextLookKind,
+    /// Exploratory moves asked for where turns can't tell; none of a robot without odometry.
+    pub moves: u16,
+    /// Length of a move where there is room in metres.
+    pub move_m: f64,
+}
+
+/// Where a robot that is not sure yet looks next.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NextLookKind {
+    /// A turn of `turn_deg` on.
+    Fixed,
+    /// The view that is predicted to tell the best place from its rivals best.
+    Predicted,
 }
 
 impl Default for VerificationSettings {
     fn default() -> Self {
-        let VerificationConfig { cells_per_side, headings, confidence, refined, finalists } =
+        let VerificationConfig { cells_per_side, headings, confidence, refined, finalists, next_look, moves, move_m } =
             VerificationConfig::reference();
-        Self { cells_per_side, headings, confidence: decimal(confidence), refined, finalists }
+        let next_look = match next_look {
+            NextLook::Fixed => NextLookKind::Fixed,
+            NextLook::Predicted => NextLookKind::Predicted,
+        };
+        let (confidence, move_m) = (decimal(confidence), decimal(move_m));
+        Self { cells_per_side, headings, confidence, refined, finalists, next_look, moves, move_m }
     }
 }
 
 impl VerificationSettings {
     fn config(&self) -> VerificationConfig {
-        let Self { cells_per_side, headings, confidence, refined, finalists } = *self;
-        VerificationConfig { cells_per_side, headings, confidence: confidence as f32, refined, finalists }
+        let Self { cells_per_side, headings, confidence, refined, finalists, next_look, moves, move_m } = *self;
+        let next_look = match next_look {
+            NextLookKind::Fixed => NextLook::Fixed,
+            NextLookKind::Predicted => NextLook::Predicted,
+        };
+        let (confidence, move_m) = (confidence as f32, move_m as f32);
+        VerificationConfig { cells_per_side, headings, confidence, refined, finalists, next_look, moves, move_m }
     }
 }
 

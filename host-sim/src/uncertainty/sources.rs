@@ -12,13 +12,13 @@
 
 use super::{
     ActsIn, CameraCalibration, CameraTilt, Clutter, Compass, CornerDetectionLoss, CornerMatch, EdgeDetectionLoss,
-    EpipolarRemoval, GeometricApproximation, ImageNoise, LateralEdgeShift, Occlusion, PolarityFlips, SourceFacts,
+    EpipolarRemoval, GeometricApproximation, ImageNoise, LateralEdgeShift, Occlusion, Odometry, PolarityFlips, SourceFacts,
     SourceNumber, SourceSetting, StereoMatch, UncertaintySource,
 };
 use crate::camera::StereoObservation;
 use crate::random::Stream;
-use edgeloc::geometry::Heading;
-use edgeloc::localize::HeadingPrior;
+use edgeloc::geometry::{Angle, Heading};
+use edgeloc::localize::{HeadingPrior, Motion};
 use serde::{Deserialize, Serialize};
 
 macro_rules! list_of_sources {
@@ -79,6 +79,7 @@ list_of_sources! {
     corner_match: CornerMatch,
     camera_calibration: CameraCalibration,
     compass: Compass,
+    odometry: Odometry,
 }
 
 impl Sources {
@@ -113,6 +114,19 @@ impl Sources {
         }
         let facts = self.compass.facts();
         Some(self.compass.read(heading, &mut key.of_trial().stream(facts), &mut key.stream(facts)))
+    }
+
+    /// What odometry tells in the look of `key` of a turn and a way straight ahead after it \[m\]; exact when its error is
+    /// off, `None` without odometry.
+    #[must_use]
+    pub fn odometry_reading(&self, turn: Angle, ahead_m: f32, key: &NoiseKey) -> Option<Motion> {
+        if !self.odometry.available {
+            return None;
+        }
+        if !self.odometry.enabled {
+            return Some(Motion::exact(turn, ahead_m));
+        }
+        Some(self.odometry.read(turn, ahead_m, &mut key.stream(self.odometry.facts())))
     }
 
     /// The sources themselves, if every magnitude and every other number is legal.

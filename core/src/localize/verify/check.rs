@@ -4,7 +4,7 @@ use super::Evidence;
 use super::channel::{CHANNELS, channel_in_lane};
 use super::distance_planes::{DistancePlanes, PLANE};
 use super::image_frame::ImageFrame;
-use super::kept_looks::KeptLooks;
+use super::kept_looks::{KeptLooks, LookPose};
 use super::lanes::{LANES, Lane, LanePart, MAX_POINTS, SegmentEnds, Tables, rounded};
 use super::responses::Responses;
 use super::seen_segment::SeenSegment;
@@ -33,6 +33,17 @@ pub(super) struct Closeness {
     pub(super) heading_rad: f32,
     /// Distance between points that are looked up \[px\].
     pub(super) spacing_px: f32,
+}
+
+impl Closeness {
+    /// As closely, for the camera as it stood at a look.
+    pub(super) fn at(self, look: &LookPose) -> Self {
+        Self {
+            position_m: math::length(self.position_m, look.way_spread_m),
+            heading_rad: math::length(self.heading_rad, look.heading_spread_rad),
+            ..self
+        }
+    }
 }
 
 /// A projected model segment.

@@ -18,6 +18,22 @@ pub struct VerificationConfig {
     pub refined: u16,
     /// Places that are posed most closely and compared, 1 to `refined`.
     pub finalists: u16,
+    /// Where to look next.
+    pub next_look: NextLook,
+    /// Exploratory moves asked for where turns can't tell, 0 to 15; none of a robot that reports no motion.
+    pub moves: u16,
+    /// Length of a move where there is room \[m\], 0 to 10.
+    pub move_m: f32,
+}
+
+/// Where a robot that is not sure yet looks next.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum NextLook {
+    /// A turn of [`turn`](crate::localize::LocalizerConfig::turn) on.
+    Fixed,
+    /// Of the multiples of that turn, the one whose view is predicted to tell the best place from its rivals best.
+    #[default]
+    Predicted,
 }
 
 impl VerificationConfig {
@@ -27,7 +43,16 @@ impl VerificationConfig {
     /// The values that the study of the office settled on.
     #[must_use]
     pub const fn reference() -> Self {
-        Self { cells_per_side: 7, headings: 4, confidence: 0.45, refined: 56, finalists: 12 }
+        Self {
+            cells_per_side: 7,
+            headings: 4,
+            confidence: 0.45,
+            refined: 56,
+            finalists: 12,
+            next_look: NextLook::Predicted,
+            moves: 2,
+            move_m: 1.0,
+        }
     }
 
     /// Whether every parameter is in range.
@@ -39,6 +64,13 @@ impl VerificationConfig {
             && (0.0..=100.0).contains(&self.confidence)
             && (1..=256).contains(&self.refined)
             && (1..=self.refined).contains(&self.finalists)
+            && self.moves <= 15
+            && (0.0..=10.0).contains(&self.move_m)
+    }
+
+    /// Places that the robot looks around from, at most.
+    pub(super) const fn places(&self) -> usize {
+        1 + self.moves as usize
     }
 
     /// Poses tried about each node.

@@ -17,16 +17,25 @@ pub(super) struct LookPose {
     pub(super) heading_rad: f32,
     /// Way made since the first look, axes of the world \[m\].
     pub(super) way_m: [f32; 2],
-    segment_count: u32,
+    /// Standard deviation of the heading beside that of the first look \[rad\].
+    pub(super) heading_spread_rad: f32,
+    /// Standard deviation of the way, along either axis \[m\].
+    pub(super) way_spread_m: f32,
+    pub(super) segments_end: u32,
 }
 
 /// All looks of the attempt.
 #[derive(Debug)]
 pub(super) struct KeptLooks<'m> {
     poses: &'m mut [LookPose],
-    /// `max_segments` places for each look.
+    /// Those of all looks, one behind the other.
     segments: &'m mut [SeenSegment],
+    /// Segments of a look at most.
+    max_segments: usize,
     count: usize,
+    /// The first look from where the robot stands now.
+    first_here: usize,
+    has_odometry: bool,
     seen_q4: i32,
     /// Standard deviation of the compass at the first look \[rad\]; none without a compass.
     compass_spread_rad: Option<f32>,
@@ -35,12 +44,23 @@ pub(super) struct KeptLooks<'m> {
 }
 
 impl<'m> KeptLooks<'m> {
-    pub(super) fn new(poses: &'m mut [LookPose], segments: &'m mut [SeenSegment]) -> Self {
-        Self { poses, segments, count: 0, seen_q4: 0, compass_spread_rad: None, dominant: DominantDirection::NONE }
+    pub(super) fn new(poses: &'m mut [LookPose], segments: &'m mut [SeenSegment], max_segments: u16) -> Self {
+        Self {
+            poses,
+            segments,
+            max_segments: usize::from(max_segments),
+            count: 0,
+            first_here: 0,
+            has_odometry: false,
+            seen_q4: 0,
+            compass_spread_rad: None,
+            dominant: DominantDirection::NONE,
+        }
     }
 
     pub(super) fn clear(&mut self) {
-        (self.count, self.seen_q4) = (0, 0);
+        (self.count, self.first_here, self.seen_q4) = (0, 0, 0);
+        self.has_odometry = false;
         self.dominant = DominantDirection::NONE;
     }
 
@@ -48,13 +68,35 @@ impl<'m> KeptLooks<'m> {
         self.count
     }
 
+    /// Whether there is no room for a look more, or too little to be worth one.
     pub(super) const fn is_full(&self) -> bool {
-        self.count == self.poses.len()
+        self.count == self.poses.len() || self.segments.len() - self.segment_count() as usize <= self.max_segments / 4
+    }
+
+    /// Whether the robot told of its motion since the look before.
+    pub(super) const fn has_odometry(&self) -> bool {
+        self.has_odometry
+    }
+
+    /// The looks from where the robot stands now.
+    pub(super) fn here(&self) -> &[LookPose] {
+        &self.poses[self.first_here..self.count]
+    }
+
+    /// From the next look on the robot stands elsewhere.
+    pub(super) const fn leave(&mut self) {
+        self.first_here = self.count;
     }
 
     /// Segments of all looks.
-    pub(super) fn segment_count(&self) -> u32 {
-        self.poses[..self.count].iter().fold(0, |sum, pose| sum.saturating_add(pose.segment_count))
+    pub(super) const fn segment_count(&self) -> u32 {
+        if self.count == 0 { 0 } else { self.poses[self.count - 1].segments_end }
+    }
+
+    /// Room for segments that belong to no look.
+    pub(super) fn spare(&mut self) -> &mut [SeenSegment] {
+        let taken = self.segment_count() as usize;
+        &mut self.segments[taken..]
     }
 
     /// Length of all segments of all looks in Q4 px.
@@ -78,8 +120,8 @@ impl<'m> KeptLooks<'m> {
 
     /// The segments of a look that entered.
     pub(super) fn segments(&self, look: usize) -> &[SeenSegment] {
-        let capacity = self.segments.len() / self.poses.len().max(1);
-        &self.segments[look * capacity..][..self.pose(look).segment_count as usize]
+        let first = look.checked_sub(1).map_or(0, |before| self.pose(before).segments_end);
+        &self.segments[first as usize..self.pose(look).segments_end as usize]
     }
 
     /// Keeps a look: the longest of its segments, and how the camera stood. Does nothing when there is no room.
@@ -93,8 +135,10 @@ impl<'m> KeptLooks<'m> {
         if self.is_full() {
             return;
         }
-        let capacity = self.segments.len() / self.poses.len();
-        let places = &mut self.segments[self.count * capacity..][..capacity];
+        let taken = self.segment_count();
+        let places = &mut self.segments[taken as usize..];
+        let capacity = places.len().min(self.max_segments);
+        let places = &mut places[..capacity];
         let mut kept = 0;
         for segment in segments.iter().filter(|segment| filter.keeps(segment)) {
             let new = SeenSegment::new(segment, frame);
@@ -108,11 +152,11 @@ impl<'m> KeptLooks<'m> {
             }
         }
         self.seen_q4 = places[..kept].iter().fold(self.seen_q4, |sum, seen| sum.saturating_add(seen.length_q4()));
-        let (heading_rad, way_m) = self.next_pose(heading, motion);
+        let pose = LookPose { segments_end: taken + kept as u32, ..self.next_pose(heading, motion) };
         if self.compass_spread_rad.is_none() {
-            self.dominant.add_image(segments, heading_rad, frame);
+            self.dominant.add_image(segments, pose.heading_rad, frame);
         }
-        self.poses[self.count] = LookPose { heading_rad, way_m, segment_count: kept as u32 };
+        self.poses[self.count] = pose;
         self.count += 1;
     }
 
@@ -121,22 +165,44 @@ impl<'m> KeptLooks<'m> {
         self.count == 0 || heading.is_some() || motion.is_some()
     }
 
-    /// The compass speaks at the first look; after that odometry, where there is one, tells better.
-    fn next_pose(&mut self, heading: Option<HeadingPrior>, motion: Option<Motion>) -> (f32, [f32; 2]) {
-        let measured = heading.map_or(0.0, |heading| heading.mean.angle().radians());
+    /// The compass speaks at the first look; after that the more exact of compass and odometry.
+    fn next_pose(&mut self, compass: Option<HeadingPrior>, motion: Option<Motion>) -> LookPose {
+        let told = compass.map(|compass| {
+            // Beyond half a radian the search would not find the heading anyway.
+            (compass.mean.angle().radians(), sane(compass.standard_deviation.radians()))
+        });
         let Some(last) = self.count.checked_sub(1).map(|last| self.pose(last)) else {
-            // Beyond half a radian, and where it makes no sense, the search would not find the heading anyway.
-            self.compass_spread_rad = heading.map(|heading| {
-                let spread_rad = math::abs(heading.standard_deviation.radians());
-                if spread_rad < 0.5 { spread_rad } else { 0.5 }
-            });
-            return (measured, [0.0; 2]);
+            self.compass_spread_rad = told.map(|(_, spread_rad)| spread_rad);
+            return LookPose { heading_rad: told.map_or(0.0, |(told_rad, _)| told_rad), ..LookPose::default() };
         };
-        let Some(motion) = motion.filter(|motion| motion.step_m.is_finite()) else { return (measured, last.way_m) };
-        let (sin, cos) = math::sin_cos(last.heading_rad);
-        let Point2 { x: forward, y: left } = motion.step_m;
-        let way_m = [last.way_m[0] + forward * cos - left * sin, last.way_m[1] + forward * sin + left * cos];
-        let turned = Heading::new(Angle::from_radians(last.heading_rad + motion.turn.radians()));
-        (turned.map_or(measured, |heading| heading.angle().radians()), way_m)
+        let motion = motion.filter(|motion| motion.step_m.is_finite());
+        self.has_odometry = motion.is_some();
+        let mut next = LookPose { heading_spread_rad: 0.5, ..last };
+        if let Some(motion) = motion {
+            let (sin, cos) = math::sin_cos(last.heading_rad);
+            let Point2 { x: forward, y: left } = motion.step_m;
+            next.way_m = [last.way_m[0] + forward * cos - left * sin, last.way_m[1] + forward * sin + left * cos];
+            next.way_spread_m = math::length(
+                math::length(last.way_spread_m, sane(motion.step_standard_deviation_m)),
+                math::length(forward, left) * last.heading_spread_rad,
+            );
+            if let Some(turned) = Heading::new(Angle::from_radians(last.heading_rad + motion.turn.radians())) {
+                next.heading_rad = turned.angle().radians();
+                next.heading_spread_rad =
+                    math::length(last.heading_spread_rad, sane(motion.turn_standard_deviation.radians()));
+            }
+        }
+        if let Some((told_rad, spread_rad)) = told
+            && (spread_rad < next.heading_spread_rad || next.heading_spread_rad >= 0.5)
+        {
+            (next.heading_rad, next.heading_spread_rad) = (told_rad, spread_rad);
+        }
+        next
     }
+}
+
+/// A standard deviation that makes sense: not negative, half a metre or radian at most.
+fn sane(spread: f32) -> f32 {
+    let spread = math::abs(spread);
+    if spread < 0.5 { spread } else { 0.5 }
 }

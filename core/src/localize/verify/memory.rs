@@ -32,12 +32,12 @@ pub(in crate::localize) const fn memory_len(
     verification: &VerificationConfig,
     node_count: usize,
 ) -> usize {
-    let looks = config.max_looks as usize;
+    let (places, looks) = (verification.places(), config.max_looks as usize);
     sum(&[
         words::<u8>(DistancePlanes::BYTES),
         words::<ViewSegment>(VIEW_CAPACITY),
         words::<CellEvidence>(node_count.saturating_mul(verification.poses_per_node())),
-        words::<LookPose>(looks),
+        words::<LookPose>(looks.saturating_mul(places)),
         words::<SeenSegment>(looks.saturating_mul(config.max_segments as usize)),
         words::<Hypothesis>(node_count.saturating_mul(VerificationConfig::PER_NODE)),
         words::<Hypothesis>(verification.refined as usize),
@@ -59,7 +59,7 @@ impl<'m> Memory<'m> {
             capacity: memory.len(),
             needed: memory_len(config, verification, node_count),
         };
-        let looks = usize::from(config.max_looks);
+        let (places, looks) = (verification.places(), usize::from(config.max_looks));
         let refined = usize::from(verification.refined);
         let mut rest = Rest::new(memory);
         let mut divide = || {
@@ -67,7 +67,7 @@ impl<'m> Memory<'m> {
                 planes: rest.take(DistancePlanes::BYTES)?.try_into().ok()?,
                 view: rest.take(VIEW_CAPACITY)?,
                 cells: rest.take(node_count.saturating_mul(verification.poses_per_node()))?,
-                poses: rest.take(looks)?,
+                poses: rest.take(looks.saturating_mul(places))?,
                 segments: rest.take(looks.saturating_mul(usize::from(config.max_segments)))?,
                 ranked: rest.take(node_count.saturating_mul(VerificationConfig::PER_NODE))?,
                 refined: rest.take(refined)?,

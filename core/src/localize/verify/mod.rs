@@ -12,6 +12,7 @@
 
 mod channel;
 mod check;
+mod clear_way;
 mod config;
 mod distance_planes;
 mod dominant;
@@ -23,6 +24,7 @@ mod judgement;
 mod kept_looks;
 mod lanes;
 mod memory;
+mod next_look;
 mod pose_check;
 mod pose_fit;
 mod responses;
@@ -32,7 +34,7 @@ mod spacing;
 mod verifying;
 mod view;
 
-pub use config::VerificationConfig;
+pub use config::{NextLook, VerificationConfig};
 pub use evidence::Evidence;
 pub(super) use memory::memory_len;
 pub use pose_check::PoseCheck;

@@ -164,6 +164,7 @@ impl<'m> Search<'m> {
         let headings = self.headings;
         let closeness =
             Closeness { position_m: 0.4 * self.cell_m, heading_rad: 0.67 * headings.left_rad, spacing_px: 14.0 };
+        let closeness = closeness.at(&pose);
         let per_heading = self.config.cells_per_node();
         let cell_m = self.cell_m;
         let offset_of = |index: i32| [(index % side - half) as f32 * cell_m, (index / side - half) as f32 * cell_m];
@@ -254,6 +255,7 @@ impl<'m> Search<'m> {
             let look = if is_last_drawn { count - 1 - order } else { order };
             checker.draw(looks, look);
             let pose = looks.pose(look);
+            let closeness = closeness.at(&pose);
             for (parent, children) in parents.iter().zip(children.chunks_exact_mut(poses)) {
                 let Some(node) = database.node(parent.node()) else { continue };
                 for (turn, group) in children.chunks_exact_mut(POSITIONS).enumerate() {

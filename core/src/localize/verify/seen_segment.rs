@@ -1,7 +1,8 @@
 //! A segment of a look as it is kept until the end of the attempt.
 
 use super::image_frame::ImageFrame;
-use crate::geometry::Segment2;
+use crate::geometry::{Point2, Segment2};
+use crate::localize::segment_filter::SegmentFilter;
 use crate::math;
 use zerocopy::{FromBytes, Immutable, IntoBytes};
 
@@ -20,6 +21,15 @@ impl SeenSegment {
             start_q4: [q4(segment.start().x), q4(segment.start().y)],
             end_q4: [q4(segment.end().x), q4(segment.end().y)],
         }
+    }
+
+    /// A segment between two points of the normal image, if `filter` keeps it.
+    pub(super) fn predicted(start: Point2, end: Point2, filter: &SegmentFilter) -> Option<Self> {
+        let (dx, dy) = (end.x - start.x, end.y - start.y);
+        let is_long = math::length(dx, dy) >= filter.min_length_px;
+        let is_level = math::abs(dy) < filter.horizontal_slope * math::abs(dx);
+        let q4 = |point: Point2| [point.x, point.y].map(|coordinate| math::round(coordinate * 16.0) as i16);
+        (is_long && !is_level).then(|| Self { start_q4: q4(start), end_q4: q4(end) })
     }
 
     /// Length in Q4 px.

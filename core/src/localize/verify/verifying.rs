@@ -1,11 +1,12 @@
 //! The verifying localiser: poses around every node, checked against all looks.
 
-use super::VerificationConfig;
+use super::{NextLook, VerificationConfig};
 use super::check::Checker;
 use super::hypothesis::Hypothesis;
 use super::judgement::{Judgement, judge, nearest_node};
 use super::kept_looks::KeptLooks;
 use super::memory::Memory;
+use super::next_look::{most_telling_move, most_telling_turn};
 use super::pose_fit::fit;
 use super::search::Search;
 use crate::database::{NodeId, TopologicalDatabase};
@@ -32,7 +33,9 @@ const LEAST_PROBABILITY: f32 = 0.01;
 pub(in crate::localize) struct VerifyingLocalizer<'m> {
     database: TopologicalDatabase<'m>,
     config: LocalizerConfig,
-    confidence: f32,
+    verification: VerificationConfig,
+    /// Moves asked for so far.
+    moves: u16,
     /// Scores that an answer asks for, before the last look and after it, in Q20.
     least_scores_q20: [i32; 2],
     checker: Checker<'m>,
@@ -57,13 +60,14 @@ impl<'m> VerifyingLocalizer<'m> {
         Ok(Self {
             database,
             config,
-            confidence: verification.confidence,
+            verification: *verification,
+            moves: 0,
             least_scores_q20: LEAST_AGREEMENTS.map(|share| {
                 let agreement = share * database.self_agreement().unwrap_or(USUAL_AGREEMENT);
                 (agreement * (1 << 20) as f32) as i32
             }),
             checker: Checker::new(database.rig(), SegmentFilter::new(&config), memory.planes, memory.view),
-            looks: KeptLooks::new(memory.poses, memory.segments),
+            looks: KeptLooks::new(memory.poses, memory.segments, config.max_segments),
             search: Search::new(verification, &database, search_memory),
             candidates: CandidateSet::new(memory.node_scores),
             is_finished: false,
@@ -94,6 +98,7 @@ impl<'m> VerifyingLocalizer<'m> {
 
     /// Forgets all looks.
     pub(in crate::localize) fn reset(&mut self) {
+        self.moves = 0;
         self.looks.clear();
         self.checker.forget();
         self.search.clear();
@@ -112,14 +117,19 @@ impl<'m> VerifyingLocalizer<'m> {
     }
 
     fn decide(&mut self) -> Decision {
-        let has_looked_enough = self.looks.is_full();
+        let may_turn = self.looks.here().len() < usize::from(self.config.max_looks) && !self.looks.is_full();
+        let may_move = self.moves < self.verification.moves && self.looks.has_odometry() && !self.looks.is_full();
+        let has_looked_enough = !may_turn && !may_move;
         let is_poor = self.looks.seen_q4() < POOR_PX * 16;
         let judgement = judge(self.search.places(), &self.database, self.looks.segment_count());
         match judgement {
             Some(judgement) if !is_poor && self.is_sure(&judgement, has_looked_enough) => {
                 Decision::Localized(self.localized(&judgement))
             }
-            _ if !has_looked_enough => Decision::LookAgain { turn: self.config.turn },
+            _ if may_turn => Decision::LookAgain { turn: self.next_turn(), step_m: 0.0 },
+            judgement if may_move && (is_poor || judgement.is_some_and(|best| !self.is_outside(&best, true))) => {
+                self.next_move()
+            }
             Some(_) | None if is_poor => Decision::Unknown { reason: UnknownReason::SceneTooPoor },
             Some(judgement) if !self.is_outside(&judgement, true) => {
                 let mut rivals = judgement.places;
@@ -131,8 +141,28 @@ impl<'m> VerifyingLocalizer<'m> {
     }
 
     fn is_sure(&self, judgement: &Judgement, is_last_look: bool) -> bool {
-        let asked = if is_last_look { self.confidence * LAST_CONFIDENCE } else { self.confidence };
+        let asked = if is_last_look { self.verification.confidence * LAST_CONFIDENCE } else { self.verification.confidence };
         judgement.confidence > asked && !self.is_outside(judgement, is_last_look)
+    }
+
+    fn next_turn(&mut self) -> Angle {
+        let Self { config, database, checker, looks, .. } = self;
+        match self.verification.next_look {
+            NextLook::Fixed => config.turn,
+            NextLook::Predicted => {
+                most_telling_turn(self.search.places(), config.turn, config.max_looks, database, checker, looks)
+            }
+        }
+    }
+
+    /// A turn and a step to where the best place has room and its rivals look different.
+    fn next_move(&mut self) -> Decision {
+        let Self { database, checker, looks, .. } = self;
+        let (turn, step_m) =
+            most_telling_move(self.search.places(), self.verification.move_m, database, checker, looks);
+        self.moves += 1;
+        self.looks.leave();
+        Decision::LookAgain { turn, step_m }
     }
 
     /// The answer: the pose at the last look, and the node nearest to it.

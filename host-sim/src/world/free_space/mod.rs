@@ -16,7 +16,8 @@ mod indoor;
 use super::{Surfaces, WireframeWorld};
 use crate::random::Stream;
 use coverage::Grid;
-use edgeloc::geometry::Point2;
+use edgeloc::geometry::{Heading, Point2};
+use edgeloc::math;
 use indoor::{IndoorRule, Indoors, OUTSIDE_BALL_M, indoor_regions};
 
 pub(super) use coverage::{Slab, outline};
@@ -126,6 +127,17 @@ impl FreeSpace {
     #[must_use]
     pub fn contains(&self, point: Point2) -> bool {
         self.grid.cell_at(point).is_some_and(|cell| self.numbers[cell] != NOT_FREE)
+    }
+
+    /// How far a robot at `from` can drive along `heading` before it meets something, `most_m` at most \[m\].
+    #[must_use]
+    pub fn free_way_m(&self, from: Point2, heading: Heading, most_m: f32) -> f32 {
+        let (sin, cos) = math::sin_cos(heading.angle().radians());
+        let step_m = 0.25 * self.cell_m();
+        let at = |way_m: f32| Point2::new(from.x + way_m * cos, from.y + way_m * sin);
+        let steps = (most_m / step_m) as u32;
+        let free = (1..=steps).take_while(|step| self.contains(at(*step as f32 * step_m))).count();
+        if free == steps as usize && self.contains(at(most_m)) { most_m } else { free as f32 * step_m }
     }
 
     /// The number of the free cell at a point of the floor, as in [`Self::cell_centers`].
