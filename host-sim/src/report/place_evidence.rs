@@ -8,6 +8,7 @@ use super::LookExplanation;
 use edgeloc::database::{Node, NodeId, TopologicalDatabase};
 use edgeloc::geometry::{Angle, Heading, Point2};
 use edgeloc::localize::{Evidence, LocalizerConfig, PoseCheck, lines_to_match};
+use edgeloc::math;
 use edgeloc::pgh::Line;
 
 /// Places named.
@@ -74,7 +75,8 @@ pub(super) fn place_evidence(
     let mut checks = Vec::new();
     for (look, memory) in looks.iter().zip(&mut memories) {
         let check = PoseCheck::new(map.rig(), config, &look.scene, memory).expect("memory of the length asked for");
-        checks.push((check, told_heading(looks, look, Angle::default())));
+        let way = told_way(first, look);
+        checks.push(Check { check, told: told_heading(looks, look, Angle::default()), way });
     }
     let nodes: Vec<Node<'_>> = map.nodes().collect();
     let reach_m = reach_m(&nodes);
@@ -103,15 +105,45 @@ pub(super) fn place_evidence(
         for place in places.iter_mut().chain([&mut truth]) {
             place.behind = (best - place.score) * weight;
         }
-        let cells = cells.iter().map(|cell| (cell.position, cell.score)).collect();
+        // What is drawn is where the robot is at this look.
+        let way = checks.checks[index].way;
+        let cells = cells.iter().map(|cell| (after(cell, way), cell.score)).collect();
+        for place in places.iter_mut().chain([&mut truth]) {
+            place.position = after(place, way);
+        }
         found.push(PlaceEvidence { cell_m, cells, places, truth });
     }
     found
 }
 
+/// The way made from the first look to another, as the compass at the first would have it.
+fn told_way(first: &LookExplanation, look: &LookExplanation) -> Point2 {
+    let (from, to) = (first.pose_true.position, look.pose_true.position);
+    let error_rad = first.compass.angle().radians() - first.pose_true.heading.angle().radians();
+    turned(Point2::new(to.x - from.x, to.y - from.y), error_rad)
+}
+
+/// Where a robot that was at `place` at the first look is after that way.
+fn after(place: &Place, way: Point2) -> Point2 {
+    let way = turned(way, place.heading_error.radians());
+    Point2::new(place.position.x + way.x, place.position.y + way.y)
+}
+
+fn turned(way: Point2, by_rad: f32) -> Point2 {
+    let (sin, cos) = math::sin_cos(by_rad);
+    Point2::new(way.x * cos - way.y * sin, way.x * sin + way.y * cos)
+}
+
+/// One look, ready to be asked.
+struct Check<'m> {
+    check: PoseCheck<'m>,
+    told: Heading,
+    way: Point2,
+}
+
 /// The looks, ready to be asked.
 struct Checks<'m> {
-    checks: Vec<(PoseCheck<'m>, Heading)>,
+    checks: Vec<Check<'m>>,
     cell_m: f32,
     /// Standard deviation of the compass.
     spread_rad: f32,
@@ -119,8 +151,8 @@ struct Checks<'m> {
 
 impl Checks<'_> {
     fn evidence(&mut self, look: usize, node: &Node<'_>, place: &Place, closeness: [f32; 3]) -> Evidence {
-        let (check, told) = &mut self.checks[look];
-        let (from, to) = (node.position(), place.position);
+        let Check { check, told, way } = &mut self.checks[look];
+        let (from, to) = (node.position(), after(place, *way));
         let heading = told.turned(place.heading_error).unwrap_or(*told);
         check.evidence(node, ([to.x - from.x, to.y - from.y], heading), closeness)
     }

@@ -1,7 +1,7 @@
 //! A made-up run for tests of drawings and tables.
 
 use crate::learning::{SightCoverage, Squares};
-use crate::monte_carlo::{TruePose, Outcome, TrialRecord};
+use crate::monte_carlo::{Outcome, TrialRecord, TruePose};
 use crate::random::Stream;
 use crate::report::{FreeCells, LookExplanation, Manifest, RunResults, RunTimings, Summary, WorldFacts};
 use crate::scenario::{Scenario, Start};

@@ -1,6 +1,7 @@
 //! How far each quarter-resolution pixel lies from the nearest seen segment of an orientation.
 
 use super::SeenSegment;
+use super::chamfer::spread;
 use super::channel::{CHANNELS, channel_of, neighbor_of};
 
 /// Pixels of a plane in a row; each is 4 x 4 px of the normal image.
@@ -11,7 +12,6 @@ pub(super) const ROWS: usize = 120;
 pub(super) const PLANE: usize = COLUMNS * ROWS;
 /// Units of distance from a pixel to the next; 255 units and beyond are far.
 pub(super) const UNITS_PER_PIXEL: i32 = 5;
-const DIAGONAL: u8 = 7;
 
 /// One plane of distances for each orientation channel.
 #[derive(Debug)]
@@ -48,9 +48,7 @@ impl<'m> DistancePlanes<'m> {
                 draw(&mut self.planes[channel * PLANE..][..PLANE], segment);
             }
         }
-        for plane in self.planes.chunks_exact_mut(PLANE) {
-            spread(plane);
-        }
+        spread(self.planes);
     }
 }
 
@@ -80,50 +78,6 @@ fn draw(plane: &mut [u8], segment: &SeenSegment) {
                 let cell = &mut plane[row as usize * COLUMNS + column as usize];
                 *cell = (*cell).min(distance as u8);
             }
-        }
-    }
-}
-
-/// Chamfer distances: two passes, steps of 5 and 7 units.
-fn spread(plane: &mut [u8]) {
-    const STEP: u8 = UNITS_PER_PIXEL as u8;
-    let mut relax = |at: usize, neighbors: [(bool, usize, u8); 4]| {
-        let mut least = plane[at];
-        for (is_inside, neighbor, step) in neighbors {
-            if is_inside {
-                least = least.min(plane[neighbor].saturating_add(step));
-            }
-        }
-        plane[at] = least;
-    };
-    for row in 0..ROWS {
-        for column in 0..COLUMNS {
-            let at = row * COLUMNS + column;
-            let (above, left, right) = (row > 0, column > 0, column + 1 < COLUMNS);
-            relax(
-                at,
-                [
-                    (left, at.wrapping_sub(1), STEP),
-                    (above, at.wrapping_sub(COLUMNS), STEP),
-                    (above && left, at.wrapping_sub(COLUMNS + 1), DIAGONAL),
-                    (above && right, at.wrapping_sub(COLUMNS - 1), DIAGONAL),
-                ],
-            );
-        }
-    }
-    for row in (0..ROWS).rev() {
-        for column in (0..COLUMNS).rev() {
-            let at = row * COLUMNS + column;
-            let (below, left, right) = (row + 1 < ROWS, column > 0, column + 1 < COLUMNS);
-            relax(
-                at,
-                [
-                    (right, at + 1, STEP),
-                    (below, at + COLUMNS, STEP),
-                    (below && right, at + COLUMNS + 1, DIAGONAL),
-                    (below && left, at + COLUMNS - 1, DIAGONAL),
-                ],
-            );
         }
     }
 }

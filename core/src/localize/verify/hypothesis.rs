@@ -1,6 +1,7 @@
 //! A pose that the robot may have had at the first look.
 
 use super::Evidence;
+use super::kept_looks::LookPose;
 use crate::database::{NodeId, TopologicalDatabase};
 use crate::geometry::Point2;
 use core::cmp::Ordering;
@@ -30,10 +31,23 @@ impl Hypothesis {
         NodeId(self.node)
     }
 
-    /// Position in the world frame.
+    /// Where the camera stood at a look, from the node, axes of the world \[m\].
+    pub(super) fn offset_at(&self, look: &LookPose) -> [f32; 2] {
+        let [x, y] = look.way_m_if(self.heading_error_rad);
+        [self.offset_m[0] + x, self.offset_m[1] + y]
+    }
+
+    /// Position at the first look in the world frame.
     pub(super) fn world_position(&self, database: &TopologicalDatabase<'_>) -> Point2 {
         let node = database.node(self.node()).map_or(Point2::default(), |node| node.position());
         Point2::new(node.x + self.offset_m[0], node.y + self.offset_m[1])
+    }
+
+    /// Position at a look in the world frame.
+    pub(super) fn world_position_at(&self, look: &LookPose, database: &TopologicalDatabase<'_>) -> Point2 {
+        let node = database.node(self.node()).map_or(Point2::default(), |node| node.position());
+        let [x, y] = self.offset_at(look);
+        Point2::new(node.x + x, node.y + y)
     }
 
     /// The better first; equals by node and position, so that the order is the same everywhere.

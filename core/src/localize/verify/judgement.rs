@@ -1,6 +1,7 @@
 //! From hypotheses to a decision: how sure is the best, and which are its rivals.
 
 use super::hypothesis::Hypothesis;
+use super::kept_looks::KeptLooks;
 use crate::database::{NodeId, TopologicalDatabase};
 use crate::geometry::Point2;
 use crate::localize::{Rival, Rivals};
@@ -25,15 +26,16 @@ pub(super) struct Judgement {
 pub(super) fn judge(
     hypotheses: &[Hypothesis],
     database: &TopologicalDatabase<'_>,
-    segment_count: u32,
+    looks: &KeptLooks<'_>,
 ) -> Option<Judgement> {
     let best = *hypotheses.first()?;
-    let scale = seen_weight(segment_count) / (1 << 20) as f32;
+    let last = looks.pose(looks.count().saturating_sub(1));
+    let scale = seen_weight(looks.segment_count()) / (1 << 20) as f32;
     let behind = |hypothesis: &Hypothesis| (best.score_q20 - hypothesis.score_q20) as f32 * scale;
     let mut places = Rivals::default();
     let mut confidence = f32::INFINITY;
     for next in hypotheses {
-        let here = next.world_position(database);
+        let here = next.world_position_at(&last, database);
         if places.iter().any(|place: &Rival| place.position.distance(here) <= PLACE_RADIUS_M) {
             continue;
         }

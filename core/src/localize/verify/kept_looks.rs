@@ -15,13 +15,25 @@ use zerocopy::{FromBytes, Immutable, IntoBytes};
 pub(super) struct LookPose {
     /// Heading at the look if the compass did not err at the first \[rad\].
     pub(super) heading_rad: f32,
-    /// Way made since the first look, axes of the world \[m\].
+    /// Way made since the first look if the compass did not err there, axes of the world \[m\].
     pub(super) way_m: [f32; 2],
     /// Standard deviation of the heading beside that of the first look \[rad\].
     pub(super) heading_spread_rad: f32,
     /// Standard deviation of the way, along either axis \[m\].
     pub(super) way_spread_m: f32,
     pub(super) segments_end: u32,
+}
+
+impl LookPose {
+    /// The way made since the first look if the compass erred by that much there, axes of the world \[m\].
+    pub(super) fn way_m_if(&self, heading_error_rad: f32) -> [f32; 2] {
+        let [x, y] = self.way_m;
+        if heading_error_rad == 0.0 || self.way_m == [0.0; 2] {
+            return self.way_m;
+        }
+        let (sin, cos) = math::sin_cos(heading_error_rad);
+        [x * cos - y * sin, x * sin + y * cos]
+    }
 }
 
 /// All looks of the attempt.

@@ -10,6 +10,7 @@
 //! Sums are integers. Projection is plain IEEE single precision in source order, without a function that machines
 //! round differently.
 
+mod chamfer;
 mod channel;
 mod check;
 mod clear_way;

@@ -100,7 +100,7 @@ pub(super) fn most_telling_move(
     };
     let best_place = contest.best();
     let Some(node) = database.node(best_place.node()) else { return straight };
-    let offset_m = [best_place.offset_m[0] + last.way_m[0], best_place.offset_m[1] + last.way_m[1]];
+    let offset_m = best_place.offset_at(&last);
     let mut best: Option<([f32; 2], Angle)> = None;
     for direction in 0..DIRECTIONS {
         let turn = Angle::from_degrees(360.0 / f32::from(DIRECTIONS) * f32::from(direction)).wrapped();
@@ -151,7 +151,7 @@ fn predict(
     storage: &mut [SeenSegment],
 ) -> (usize, i32) {
     let Some(node) = database.node(place.node()) else { return (0, 0) };
-    let offset_m = [place.offset_m[0] + ahead.way_m[0], place.offset_m[1] + ahead.way_m[1]];
+    let offset_m = place.offset_at(ahead);
     checker.turn(&node, ahead.heading_rad + place.heading_error_rad, (offset_m, 0.05));
     let offset = checker.in_camera(offset_m);
     let (mut count, mut seen_q4) = (0, 0_i32);
@@ -177,7 +177,7 @@ fn evidence_for(
     checker: &mut Checker<'_>,
 ) -> Evidence {
     let Some(node) = database.node(place.node()) else { return Evidence::default() };
-    let offset_m = [place.offset_m[0] + ahead.way_m[0], place.offset_m[1] + ahead.way_m[1]];
+    let offset_m = place.offset_at(ahead);
     checker.turn(&node, ahead.heading_rad + place.heading_error_rad, (offset_m, 0.05));
     checker.evidence(&[offset_m], &CLOSENESS)[0]
 }

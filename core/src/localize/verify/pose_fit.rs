@@ -45,7 +45,8 @@ pub(super) fn fit(
         let mut normal = Normal::prior(looks.compass_spread_rad(), pose.heading_error_rad);
         for look in 0..looks.count() {
             let (Some(node), at) = (database.node(hypothesis.node()), looks.pose(look)) else { continue };
-            let offset_m = [pose.offset_m[0] + at.way_m[0], pose.offset_m[1] + at.way_m[1]];
+            let way_m = at.way_m_if(pose.heading_error_rad);
+            let offset_m = [pose.offset_m[0] + way_m[0], pose.offset_m[1] + way_m[1]];
             checker.turn(&node, at.heading_rad + pose.heading_error_rad, (offset_m, 0.05));
             normal.add_look(checker, offset_m, looks.segments(look), gate_px);
         }

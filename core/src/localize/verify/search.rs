@@ -176,7 +176,8 @@ impl<'m> Search<'m> {
             let (mut best, mut count) = ([none; VerificationConfig::PER_NODE], 0);
             for (&heading_error_rad, cells) in headings.errors_rad().iter().zip(cells.chunks_exact_mut(per_heading)) {
                 let reach_m = (half + 1) as f32 * self.cell_m;
-                checker.turn(&node, pose.heading_rad + heading_error_rad, (pose.way_m, reach_m));
+                let way_m = pose.way_m_if(heading_error_rad);
+                checker.turn(&node, pose.heading_rad + heading_error_rad, (way_m, reach_m));
                 let mut live = (0..).zip(cells).filter(|(index, cell)| {
                     let (column, row) = (index % side - half, index / side - half);
                     // The corners of the square are beyond the node's reach.
@@ -187,7 +188,7 @@ impl<'m> Search<'m> {
                     let mut offsets_m = [[0.0; 2]; LANES];
                     let mut taken = 0;
                     for (place, (index, cell)) in batch.iter_mut().zip(&mut live) {
-                        offsets_m[taken] = moved(offset_of(index), pose.way_m);
+                        offsets_m[taken] = moved(offset_of(index), way_m);
                         *place = Some((index, cell));
                         taken += 1;
                     }
@@ -260,11 +261,13 @@ impl<'m> Search<'m> {
                 let Some(node) = database.node(parent.node()) else { continue };
                 for (turn, group) in children.chunks_exact_mut(POSITIONS).enumerate() {
                     let first = turn * POSITIONS;
-                    let heading_rad = pose.heading_rad + child_of(parent, first).heading_error_rad;
-                    checker.turn(&node, heading_rad, (moved(parent.offset_m, pose.way_m), 2.0 * step_m));
+                    let heading_error_rad = child_of(parent, first).heading_error_rad;
+                    let way_m = pose.way_m_if(heading_error_rad);
+                    let heading_rad = pose.heading_rad + heading_error_rad;
+                    checker.turn(&node, heading_rad, (moved(parent.offset_m, way_m), 2.0 * step_m));
                     let mut offsets_m = [[0.0; 2]; POSITIONS];
                     for (index, offset_m) in offsets_m.iter_mut().enumerate() {
-                        *offset_m = moved(child_of(parent, first + index).offset_m, pose.way_m);
+                        *offset_m = moved(child_of(parent, first + index).offset_m, way_m);
                     }
                     for (child, look) in group.iter_mut().zip(checker.evidence(&offsets_m, &closeness)) {
                         *child = child.plus(look);

@@ -121,7 +121,7 @@ impl<'m> VerifyingLocalizer<'m> {
         let may_move = self.moves < self.verification.moves && self.looks.has_odometry() && !self.looks.is_full();
         let has_looked_enough = !may_turn && !may_move;
         let is_poor = self.looks.seen_q4() < POOR_PX * 16;
-        let judgement = judge(self.search.places(), &self.database, self.looks.segment_count());
+        let judgement = judge(self.search.places(), &self.database, &self.looks);
         match judgement {
             Some(judgement) if !is_poor && self.is_sure(&judgement, has_looked_enough) => {
                 Decision::Localized(self.localized(&judgement))
@@ -171,8 +171,8 @@ impl<'m> VerifyingLocalizer<'m> {
         let fitted = fit(best, &self.database, &mut self.checker, &self.looks);
         let last = self.looks.pose(self.looks.count().saturating_sub(1));
         let from = self.database.node(best.node()).map_or(Point2::default(), |node| node.position());
-        let position =
-            Point2::new(from.x + fitted.offset_m[0] + last.way_m[0], from.y + fitted.offset_m[1] + last.way_m[1]);
+        let way_m = last.way_m_if(fitted.heading_error_rad);
+        let position = Point2::new(from.x + fitted.offset_m[0] + way_m[0], from.y + fitted.offset_m[1] + way_m[1]);
         let heading = Heading::new(Angle::from_radians(last.heading_rad + fitted.heading_error_rad));
         let pose = PoseEstimate { position, heading: heading.unwrap_or_default(), covariance: fitted.covariance };
         let node: NodeId = nearest_node(&self.database, position);

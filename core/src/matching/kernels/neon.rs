@@ -15,6 +15,7 @@ pub(super) struct Neon;
 
 impl Body for Neon {
     const NAME: &'static str = "NEON";
+    const IS_WIDE: bool = true;
 
     #[inline(always)]
     fn best_coefficient(self, row: &[BinPair], panel: &[PanelRow]) -> i32 {

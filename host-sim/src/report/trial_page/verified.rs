@@ -30,7 +30,7 @@ pub(super) fn decision(
         h3 { "The decision" }
         dl {
             dt { "decision" } dd { (look.decision) }
-            @if let Some(pose) = &look.pose { (pose_facts(facts, look, pose)) }
+            @if let Some(pose) = &look.pose { (pose_facts(look, pose)) }
             @if let Some(probability) = look.probability {
                 dt { "probability" } dd { (format!("{:.2} % that the answer is right", 100.0 * probability)) }
             }
@@ -38,7 +38,7 @@ pub(super) fn decision(
                 dt { "possible" }
                 dd { (format!(
                     "{:.1} %: {:.2}, {:.2} m, node {}; {:.2} m from the truth", 100.0 * rival.probability, rival.x_m,
-                    rival.y_m, rival.node, Point2::new(rival.x_m, rival.y_m).distance(truth_of(facts))
+                    rival.y_m, rival.node, Point2::new(rival.x_m, rival.y_m).distance(look.pose_true.position)
                 )) }
             }
             dt { "what decides" }
@@ -84,8 +84,8 @@ pub(super) fn models(facts: &TrialFacts<'_>, look: &LookExplanation, evidence: &
     }
 }
 
-fn pose_facts(facts: &TrialFacts<'_>, look: &LookExplanation, pose: &AnsweredPose) -> Markup {
-    let truth = truth_of(facts);
+fn pose_facts(look: &LookExplanation, pose: &AnsweredPose) -> Markup {
+    let truth = look.pose_true.position;
     let [sd_x, sd_y, sd_heading] = [0, 1, 2].map(|axis| pose.covariance[axis][axis].max(0.0).sqrt());
     let covariance: Vec<String> = pose
         .covariance
@@ -127,7 +127,7 @@ fn places_table(facts: &TrialFacts<'_>, look: &LookExplanation, evidence: &Place
                 td.number { "node " (place.node.0) }
                 td.number { (format!("{:.3}", place.score)) }
                 td.number { @if name == "1" { "–" } @else { (format!("{:.3}", place.behind)) } }
-                td.number { (format!("{:.2} m", place.position.distance(truth_of(facts)))) }
+                td.number { (format!("{:.2} m", place.position.distance(look.pose_true.position))) }
             } } }
         } }
     }
@@ -135,7 +135,7 @@ fn places_table(facts: &TrialFacts<'_>, look: &LookExplanation, evidence: &Place
 
 fn plan(facts: &TrialFacts<'_>, look: &LookExplanation, evidence: &PlaceEvidence) -> SVG {
     let plan = facts.plan;
-    let mut marks = Group::new().add(plan.node_marks()).add(sight(plan, truth_of(facts), look.heading_deg));
+    let mut marks = Group::new().add(plan.node_marks()).add(sight(plan, look.pose_true.position, look.heading_deg));
     for (index, place) in evidence.places.iter().enumerate().rev() {
         marks.append(place_mark(facts, place, index));
     }
@@ -192,8 +192,4 @@ fn pose_mark(facts: &TrialFacts<'_>, pose: &AnsweredPose) -> Group {
     let ray = super::super::drawing::line("answer", (x, y), tip);
     let label = format!("answered: {:.2}, {:.2} m, heading {:.1}°", pose.x_m, pose.y_m, pose.heading_deg);
     Group::new().add(ellipse).add(ray.add(tooltip(label)))
-}
-
-fn truth_of(facts: &TrialFacts<'_>) -> Point2 {
-    Point2::new(facts.record.true_x_m, facts.record.true_y_m)
 }
