@@ -12,7 +12,8 @@ pub struct VerificationConfig {
     /// three beyond; a robot without a compass needs four, along and across the building.
     pub headings: u16,
     /// Confidence above which the best hypothesis is answered, 0 to 100: what it is ahead of the best rival a metre or
-    /// more away, times the square root of the segments seen in thirties.
+    /// more away, times the square root of the segments seen in thirties. The first look alone asks for more, a robot
+    /// that has looked all around for less.
     pub confidence: f32,
     /// Hypotheses that are posed more closely after each look, 1 to 256.
     pub refined: u16,
@@ -46,7 +47,7 @@ impl VerificationConfig {
         Self {
             cells_per_side: 7,
             headings: 4,
-            confidence: 0.45,
+            confidence: 0.4,
             refined: 56,
             finalists: 12,
             next_look: NextLook::Predicted,

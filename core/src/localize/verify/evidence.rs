@@ -22,6 +22,11 @@ impl Evidence {
         }
     }
 
+    /// The one that agrees better with a look, by two models.
+    pub(super) fn better(self, other: Self, seen_q4: i32) -> Self {
+        if other.score_q20(seen_q4) > self.score_q20(seen_q4) { other } else { self }
+    }
+
     /// Agreement of model and scenes in Q20: 1 for a model that explains all that was seen and nothing else.
     ///
     /// `2 explained / (total + seen + 50 px)`: symmetric, so that neither empty nor crowded models win.

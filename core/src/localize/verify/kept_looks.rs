@@ -9,6 +9,9 @@ use crate::localize::{HeadingPrior, Motion};
 use crate::math;
 use zerocopy::{FromBytes, Immutable, IntoBytes};
 
+/// A robot that drove less stands where it stood \[m\].
+const LEAST_MOVE_M: f32 = 0.25;
+
 /// How the camera stood at a look, as far as compass and odometry tell.
 #[derive(Debug, Clone, Copy, PartialEq, Default, FromBytes, IntoBytes, Immutable)]
 #[repr(C)]
@@ -22,13 +25,20 @@ pub(super) struct LookPose {
     /// Standard deviation of the way, along either axis \[m\].
     pub(super) way_spread_m: f32,
     pub(super) segments_end: u32,
+    /// Length of its segments in Q4 px.
+    pub(super) seen_q4: i32,
 }
 
 impl LookPose {
+    /// Whether it was taken after a move.
+    pub(super) fn is_elsewhere(&self) -> bool {
+        self.way_m != [0.0; 2]
+    }
+
     /// The way made since the first look if the compass erred by that much there, axes of the world \[m\].
     pub(super) fn way_m_if(&self, heading_error_rad: f32) -> [f32; 2] {
         let [x, y] = self.way_m;
-        if heading_error_rad == 0.0 || self.way_m == [0.0; 2] {
+        if heading_error_rad == 0.0 || !self.is_elsewhere() {
             return self.way_m;
         }
         let (sin, cos) = math::sin_cos(heading_error_rad);
@@ -95,11 +105,6 @@ impl<'m> KeptLooks<'m> {
         &self.poses[self.first_here..self.count]
     }
 
-    /// From the next look on the robot stands elsewhere.
-    pub(super) const fn leave(&mut self) {
-        self.first_here = self.count;
-    }
-
     /// Segments of all looks.
     pub(super) const fn segment_count(&self) -> u32 {
         if self.count == 0 { 0 } else { self.poses[self.count - 1].segments_end }
@@ -128,6 +133,11 @@ impl<'m> KeptLooks<'m> {
 
     pub(super) fn pose(&self, look: usize) -> LookPose {
         self.poses.get(look).copied().unwrap_or_default()
+    }
+
+    /// Length of the segments of a look in Q4 px.
+    pub(super) fn seen_q4_in(&self, look: usize) -> i32 {
+        self.pose(look).seen_q4
     }
 
     /// The segments of a look that entered.
@@ -163,10 +173,15 @@ impl<'m> KeptLooks<'m> {
                 *shortest = new;
             }
         }
-        self.seen_q4 = places[..kept].iter().fold(self.seen_q4, |sum, seen| sum.saturating_add(seen.length_q4()));
-        let pose = LookPose { segments_end: taken + kept as u32, ..self.next_pose(heading, motion) };
+        let seen_q4 = places[..kept].iter().fold(0_i32, |sum, seen| sum.saturating_add(seen.length_q4()));
+        self.seen_q4 = self.seen_q4.saturating_add(seen_q4);
+        let pose = LookPose { segments_end: taken + kept as u32, seen_q4, ..self.next_pose(heading, motion) };
         if self.compass_spread_rad.is_none() {
             self.dominant.add_image(segments, pose.heading_rad, frame);
+        }
+        let before = self.pose(self.count.saturating_sub(1)).way_m;
+        if math::length(pose.way_m[0] - before[0], pose.way_m[1] - before[1]) >= LEAST_MOVE_M {
+            self.first_here = self.count;
         }
         self.poses[self.count] = pose;
         self.count += 1;

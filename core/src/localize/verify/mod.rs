@@ -25,6 +25,8 @@ mod judgement;
 mod kept_looks;
 mod lanes;
 mod memory;
+mod models;
+mod moves;
 mod next_look;
 mod pose_check;
 mod pose_fit;
@@ -32,6 +34,7 @@ mod responses;
 mod search;
 mod seen_segment;
 mod spacing;
+mod stop_rule;
 mod verifying;
 mod view;
 

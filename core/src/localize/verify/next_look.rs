@@ -9,8 +9,10 @@ use super::clear_way::clear_way_m;
 use super::hypothesis::Hypothesis;
 use super::judgement::seen_weight;
 use super::kept_looks::{KeptLooks, LookPose};
+use super::models::Model;
+use super::moves::Moves;
 use super::{Evidence, SeenSegment};
-use crate::database::TopologicalDatabase;
+use crate::database::{Node, TopologicalDatabase};
 use crate::geometry::{Angle, Point2};
 use crate::math;
 
@@ -90,6 +92,7 @@ pub(super) fn most_telling_turn(
 pub(super) fn most_telling_move(
     hypotheses: &[Hypothesis],
     move_m: f32,
+    moves: &Moves,
     database: &TopologicalDatabase<'_>,
     checker: &mut Checker<'_>,
     looks: &mut KeptLooks<'_>,
@@ -105,6 +108,9 @@ pub(super) fn most_telling_move(
     for direction in 0..DIRECTIONS {
         let turn = Angle::from_degrees(360.0 / f32::from(DIRECTIONS) * f32::from(direction)).wrapped();
         let heading_rad = last.heading_rad + turn.radians();
+        if moves.is_blocked(heading_rad) {
+            continue;
+        }
         let sin_cos = math::sin_cos(heading_rad + best_place.heading_error_rad);
         let clear_m = clear_way_m(&node, offset_m, sin_cos, move_m + STANDOFF_M);
         let step_m = math::max(clear_m - STANDOFF_M, 0.0);
@@ -151,8 +157,8 @@ fn predict(
     storage: &mut [SeenSegment],
 ) -> (usize, i32) {
     let Some(node) = database.node(place.node()) else { return (0, 0) };
-    let offset_m = place.offset_at(ahead);
-    checker.turn(&node, ahead.heading_rad + place.heading_error_rad, (offset_m, 0.05));
+    let (model, offset_m) = model_at(place, node, ahead, database);
+    checker.turn(&model.node, ahead.heading_rad + place.heading_error_rad, (offset_m, 0.05));
     let offset = checker.in_camera(offset_m);
     let (mut count, mut seen_q4) = (0, 0_i32);
     for segment in checker.view() {
@@ -169,6 +175,19 @@ fn predict(
     (count, seen_q4)
 }
 
+/// The model that tells what is seen from `place` at `ahead`, and where that is from its node, axes of the world \[m\].
+fn model_at<'m>(
+    place: &Hypothesis,
+    node: Node<'m>,
+    ahead: &LookPose,
+    database: &TopologicalDatabase<'m>,
+) -> (Model<'m>, [f32; 2]) {
+    let offset_m = place.offset_at(ahead);
+    let elsewhere = ahead.is_elsewhere().then(|| Model::nearest(&node, offset_m, database)).flatten();
+    let model = elsewhere.unwrap_or(Model::own(node));
+    (model, model.offset(offset_m))
+}
+
 /// What speaks for `place` in what is drawn as seen from `ahead`.
 fn evidence_for(
     place: &Hypothesis,
@@ -177,7 +196,7 @@ fn evidence_for(
     checker: &mut Checker<'_>,
 ) -> Evidence {
     let Some(node) = database.node(place.node()) else { return Evidence::default() };
-    let offset_m = place.offset_at(ahead);
-    checker.turn(&node, ahead.heading_rad + place.heading_error_rad, (offset_m, 0.05));
+    let (model, offset_m) = model_at(place, node, ahead, database);
+    checker.turn(&model.node, ahead.heading_rad + place.heading_error_rad, (offset_m, 0.05));
     checker.evidence(&[offset_m], &CLOSENESS)[0]
 }

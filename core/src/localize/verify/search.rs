@@ -5,8 +5,10 @@ use super::dominant::DominantDirection;
 use super::evidence::CellEvidence;
 use super::headings::Headings;
 use super::hypothesis::{Hypothesis, keep_best};
+use super::judgement::seen_weight;
 use super::kept_looks::KeptLooks;
 use super::lanes::LANES;
+use super::models::Model;
 use super::spacing::reach_m;
 use super::{Evidence, VerificationConfig};
 use crate::database::TopologicalDatabase;
@@ -20,6 +22,8 @@ const POSITIONS: usize = SIDE * SIDE;
 const HEADINGS: usize = 3;
 /// Poses tried about a hypothesis.
 pub(super) const CHILDREN: usize = HEADINGS * POSITIONS;
+/// Confidence of the best of the grid over a hypothesis that is not worth a closer look.
+const HOPELESS_LEAD: f32 = 0.7;
 /// Hypotheses nearer to each other than this are at the same place \[m\].
 const PLACE_APART_M: f32 = 0.5;
 
@@ -116,12 +120,22 @@ impl<'m> Search<'m> {
                 self.check_grid(look, database, checker, looks);
             }
         }
-        self.refined_count = self.ranked_count.min(self.refined.len());
+        self.refined_count = self.worth_refining(looks);
         self.refined[..self.refined_count].copy_from_slice(&self.ranked[..self.refined_count]);
         let [coarse, close] = &STAGES;
         self.refine(coarse, database, checker, looks);
         self.keep_places(database);
         self.refine(close, database, checker, looks);
+    }
+
+    /// How many of the ranked to pose more closely: as many as there is room for, but none so far behind the best that a
+    /// closer pose won't bring it forward.
+    fn worth_refining(&self, looks: &KeptLooks<'_>) -> usize {
+        let most = self.ranked_count.min(self.refined.len());
+        let Some(best) = self.ranked().first() else { return 0 };
+        let margin = HOPELESS_LEAD / seen_weight(looks.segment_count());
+        let floor_q20 = best.score_q20.saturating_sub((margin * (1 << 20) as f32) as i32);
+        self.ranked[..most].iter().take_while(|hypothesis| hypothesis.score_q20 >= floor_q20).count()
     }
 
     /// Keeps the best hypothesis of each place: what lies close beside a better one would be refined to the same pose.
@@ -177,7 +191,9 @@ impl<'m> Search<'m> {
             for (&heading_error_rad, cells) in headings.errors_rad().iter().zip(cells.chunks_exact_mut(per_heading)) {
                 let reach_m = (half + 1) as f32 * self.cell_m;
                 let way_m = pose.way_m_if(heading_error_rad);
-                checker.turn(&node, pose.heading_rad + heading_error_rad, (way_m, reach_m));
+                let elsewhere = pose.is_elsewhere().then(|| Model::nearest(&node, way_m, database)).flatten();
+                let model = elsewhere.unwrap_or(Model::own(node));
+                checker.turn(&model.node, pose.heading_rad + heading_error_rad, (model.offset(way_m), reach_m));
                 let mut live = (0..).zip(cells).filter(|(index, cell)| {
                     let (column, row) = (index % side - half, index / side - half);
                     // The corners of the square are beyond the node's reach.
@@ -188,7 +204,7 @@ impl<'m> Search<'m> {
                     let mut offsets_m = [[0.0; 2]; LANES];
                     let mut taken = 0;
                     for (place, (index, cell)) in batch.iter_mut().zip(&mut live) {
-                        offsets_m[taken] = moved(offset_of(index), way_m);
+                        offsets_m[taken] = model.offset(moved(offset_of(index), way_m));
                         *place = Some((index, cell));
                         taken += 1;
                     }
@@ -264,12 +280,23 @@ impl<'m> Search<'m> {
                     let heading_error_rad = child_of(parent, first).heading_error_rad;
                     let way_m = pose.way_m_if(heading_error_rad);
                     let heading_rad = pose.heading_rad + heading_error_rad;
-                    checker.turn(&node, heading_rad, (moved(parent.offset_m, way_m), 2.0 * step_m));
-                    let mut offsets_m = [[0.0; 2]; POSITIONS];
-                    for (index, offset_m) in offsets_m.iter_mut().enumerate() {
-                        *offset_m = moved(child_of(parent, first + index).offset_m, way_m);
+                    let center_m = moved(parent.offset_m, way_m);
+                    let mut look_from = |model: Model<'_>| {
+                        checker.turn(&model.node, heading_rad, (model.offset(center_m), 2.0 * step_m));
+                        let mut offsets_m = [[0.0; 2]; POSITIONS];
+                        for (index, offset_m) in offsets_m.iter_mut().enumerate() {
+                            *offset_m = model.offset(moved(child_of(parent, first + index).offset_m, way_m));
+                        }
+                        checker.evidence(&offsets_m, &closeness)
+                    };
+                    let mut evidence = look_from(Model::own(node));
+                    let elsewhere = pose.is_elsewhere().then(|| Model::nearest(&node, center_m, database)).flatten();
+                    if let Some(model) = elsewhere {
+                        for (own, other) in evidence.iter_mut().zip(look_from(model)) {
+                            *own = own.better(other, looks.seen_q4_in(look));
+                        }
                     }
-                    for (child, look) in group.iter_mut().zip(checker.evidence(&offsets_m, &closeness)) {
+                    for (child, look) in group.iter_mut().zip(evidence) {
                         *child = child.plus(look);
                     }
                 }
@@ -288,6 +315,27 @@ impl<'m> Search<'m> {
         }
         parents.sort_unstable_by(Hypothesis::rank);
     }
+}
+
+/// How well one look agrees with a pose, in Q20.
+pub(super) fn agreement_of_look(
+    pose: &Hypothesis,
+    look: usize,
+    database: &TopologicalDatabase<'_>,
+    checker: &mut Checker<'_>,
+    looks: &KeptLooks<'_>,
+) -> i32 {
+    let Some(node) = database.node(pose.node()) else { return 0 };
+    let (at, seen_q4) = (looks.pose(look), looks.seen_q4_in(look));
+    let offset_m = pose.offset_at(&at);
+    let closeness = Closeness { position_m: 0.03, heading_rad: 0.0, spacing_px: 9.0 }.at(&at);
+    checker.draw(looks, look);
+    let elsewhere = at.is_elsewhere().then(|| Model::nearest(&node, offset_m, database)).flatten();
+    let agreement_by = |model: Model<'_>| {
+        checker.turn(&model.node, at.heading_rad + pose.heading_error_rad, (model.offset(offset_m), 0.05));
+        checker.evidence(&[model.offset(offset_m)], &closeness)[0].score_q20(seen_q4)
+    };
+    [Some(Model::own(node)), elsewhere].into_iter().flatten().map(agreement_by).max().unwrap_or(0)
 }
 
 /// What the caller lends for a search: cells, the ranked, the refined and their children.

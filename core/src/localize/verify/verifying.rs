@@ -6,9 +6,11 @@ use super::hypothesis::Hypothesis;
 use super::judgement::{Judgement, judge, nearest_node};
 use super::kept_looks::KeptLooks;
 use super::memory::Memory;
+use super::moves::Moves;
 use super::next_look::{most_telling_move, most_telling_turn};
 use super::pose_fit::fit;
-use super::search::Search;
+use super::search::{Search, agreement_of_look};
+use super::stop_rule::{Looked, StopRule};
 use crate::database::{NodeId, TopologicalDatabase};
 use crate::geometry::{Angle, Heading, Point2};
 use crate::localize::segment_filter::SegmentFilter;
@@ -18,13 +20,6 @@ use crate::localize::{
 
 /// An attempt that saw less than this in all looks was too poor to tell \[px\].
 const POOR_PX: i32 = 300;
-/// After the last look a lead of this part of the confidence asked for is enough.
-const LAST_CONFIDENCE: f32 = 0.16;
-/// Agreement that an answer asks for, before the last look and after it, as a share of the map's agreement with itself:
-/// with less the robot is outside the map.
-const LEAST_AGREEMENTS: [f32; 2] = [0.95, 0.75];
-/// The map's agreement with itself, where it was not measured: what a good calibration gives.
-const USUAL_AGREEMENT: f32 = 0.5;
 /// Rivals less likely than this are not named.
 const LEAST_PROBABILITY: f32 = 0.01;
 
@@ -34,10 +29,8 @@ pub(in crate::localize) struct VerifyingLocalizer<'m> {
     database: TopologicalDatabase<'m>,
     config: LocalizerConfig,
     verification: VerificationConfig,
-    /// Moves asked for so far.
-    moves: u16,
-    /// Scores that an answer asks for, before the last look and after it, in Q20.
-    least_scores_q20: [i32; 2],
+    moves: Moves,
+    stop_rule: StopRule,
     checker: Checker<'m>,
     looks: KeptLooks<'m>,
     search: Search<'m>,
@@ -61,11 +54,8 @@ impl<'m> VerifyingLocalizer<'m> {
             database,
             config,
             verification: *verification,
-            moves: 0,
-            least_scores_q20: LEAST_AGREEMENTS.map(|share| {
-                let agreement = share * database.self_agreement().unwrap_or(USUAL_AGREEMENT);
-                (agreement * (1 << 20) as f32) as i32
-            }),
+            moves: Moves::default(),
+            stop_rule: StopRule::new(verification.confidence, database.self_agreement()),
             checker: Checker::new(database.rig(), SegmentFilter::new(&config), memory.planes, memory.view),
             looks: KeptLooks::new(memory.poses, memory.segments, config.max_segments),
             search: Search::new(verification, &database, search_memory),
@@ -84,6 +74,7 @@ impl<'m> VerifyingLocalizer<'m> {
         }
         let (filter, frame) = (*self.checker.filter(), *self.checker.frame());
         self.looks.push((look.heading, look.motion_since_last), look.scene.segments(), &filter, &frame);
+        self.moves.look(&self.looks);
         self.search.look(&self.database, &mut self.checker, &self.looks);
         let Self { search, candidates, .. } = self;
         candidates.replace(|node| {
@@ -98,7 +89,7 @@ impl<'m> VerifyingLocalizer<'m> {
 
     /// Forgets all looks.
     pub(in crate::localize) fn reset(&mut self) {
-        self.moves = 0;
+        self.moves = Moves::default();
         self.looks.clear();
         self.checker.forget();
         self.search.clear();
@@ -118,20 +109,32 @@ impl<'m> VerifyingLocalizer<'m> {
 
     fn decide(&mut self) -> Decision {
         let may_turn = self.looks.here().len() < usize::from(self.config.max_looks) && !self.looks.is_full();
-        let may_move = self.moves < self.verification.moves && self.looks.has_odometry() && !self.looks.is_full();
-        let has_looked_enough = !may_turn && !may_move;
+        let may_move =
+            self.moves.may_be_more(self.verification.moves) && self.looks.has_odometry() && !self.looks.is_full();
+        let looked = match (may_turn, may_move) {
+            (true, _) if self.looks.count() <= 1 => Looked::Once,
+            (true, _) => Looked::Partly,
+            (false, true) => Looked::AllAround,
+            (false, false) => Looked::AtEverything,
+        };
         let is_poor = self.looks.seen_q4() < POOR_PX * 16;
         let judgement = judge(self.search.places(), &self.database, &self.looks);
+        let mut is_inside = judgement.is_some_and(|judgement| self.stop_rule.is_inside(&judgement));
+        let may_be_inside = judgement.is_some_and(|judgement| self.stop_rule.may_be_inside(&judgement));
+        if let Some(judgement) = &judgement
+            && !is_poor
+            && self.stop_rule.suffices(judgement, looked)
+        {
+            if self.stop_rule.is_beyond_doubt(judgement) || !self.is_contradicted(&judgement.best) {
+                return Decision::Localized(self.localized(judgement));
+            }
+            is_inside = false;
+        }
         match judgement {
-            Some(judgement) if !is_poor && self.is_sure(&judgement, has_looked_enough) => {
-                Decision::Localized(self.localized(&judgement))
-            }
             _ if may_turn => Decision::LookAgain { turn: self.next_turn(), step_m: 0.0 },
-            judgement if may_move && (is_poor || judgement.is_some_and(|best| !self.is_outside(&best, true))) => {
-                self.next_move()
-            }
+            _ if may_move && (is_poor || may_be_inside) => self.next_move(),
             Some(_) | None if is_poor => Decision::Unknown { reason: UnknownReason::SceneTooPoor },
-            Some(judgement) if !self.is_outside(&judgement, true) => {
+            Some(judgement) if is_inside => {
                 let mut rivals = judgement.places;
                 rivals.retain_likelier(LEAST_PROBABILITY);
                 Decision::Unknown { reason: UnknownReason::Indistinguishable(rivals) }
@@ -140,9 +143,13 @@ impl<'m> VerifyingLocalizer<'m> {
         }
     }
 
-    fn is_sure(&self, judgement: &Judgement, is_last_look: bool) -> bool {
-        let asked = if is_last_look { self.verification.confidence * LAST_CONFIDENCE } else { self.verification.confidence };
-        judgement.confidence > asked && !self.is_outside(judgement, is_last_look)
+    /// Whether a look that shows much agrees with nothing there.
+    fn is_contradicted(&mut self, best: &Hypothesis) -> bool {
+        let Self { database, checker, looks, stop_rule, .. } = self;
+        (0..looks.count()).any(|look| {
+            let score_q20 = agreement_of_look(best, look, database, checker, looks);
+            stop_rule.contradicts(looks.segments(look).len(), score_q20)
+        })
     }
 
     fn next_turn(&mut self) -> Angle {
@@ -157,11 +164,10 @@ impl<'m> VerifyingLocalizer<'m> {
 
     /// A turn and a step to where the best place has room and its rivals look different.
     fn next_move(&mut self) -> Decision {
-        let Self { database, checker, looks, .. } = self;
+        let Self { database, checker, looks, moves, .. } = self;
         let (turn, step_m) =
-            most_telling_move(self.search.places(), self.verification.move_m, database, checker, looks);
-        self.moves += 1;
-        self.looks.leave();
+            most_telling_move(self.search.places(), self.verification.move_m, moves, database, checker, looks);
+        moves.ask(looks, turn);
         Decision::LookAgain { turn, step_m }
     }
 
@@ -178,10 +184,5 @@ impl<'m> VerifyingLocalizer<'m> {
         let node: NodeId = nearest_node(&self.database, position);
         let probability = judgement.places.iter().next().map(|place| place.probability);
         Localized { node, pose: Some(pose), probability }
-    }
-
-    /// Whether even the best place agrees too little with what was seen.
-    fn is_outside(&self, judgement: &Judgement, is_last_look: bool) -> bool {
-        judgement.best.score_q20 < self.least_scores_q20[usize::from(is_last_look)]
     }
 }

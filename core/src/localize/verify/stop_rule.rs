@@ -1,0 +1,149 @@
+//! When the best place is sure enough to be answered.
+//!
+//! A sequential test: the lead of the best place over its best rival says whether it is that place rather than another of
+//! the map, and its agreement with what was seen, measured against the map's agreement with itself, whether it is in the
+//! map at all. Early, both have to be clear, the first look alone most of all; what agreement lacks a lead may make up for.
+//! The more the robot has looked around, the less is asked: what it could not learn by then no turn will tell.
+
+use super::judgement::Judgement;
+use crate::math;
+
+/// Confidence that the first look alone asks for, in confidences asked for.
+const FIRST_CONFIDENCE: f32 = 1.375;
+/// Having looked all around, before a move.
+const AROUND_CONFIDENCE: f32 = 0.45;
+/// When nothing is left to look at.
+const LAST_CONFIDENCE: f32 = 0.18;
+/// Agreement asked for where turns are left, as a share of the map's with itself, at the confidence asked for.
+const ASKED_AGREEMENT: f32 = 1.2;
+/// How much less agreement does for a confidence that is greater by one.
+const AGREEMENT_PER_CONFIDENCE: f32 = 0.3;
+/// The least that does, however clear the lead.
+const LEAST_AGREEMENT: f32 = 0.9;
+/// The least that does when nothing is left to look at: with less the robot is outside the map.
+const INSIDE_AGREEMENT: f32 = 0.75;
+/// The least at which a move is worth it: from elsewhere more may agree.
+const DOUBTFUL_AGREEMENT: f32 = 0.55;
+/// A look of so many segments
+const TELLING_SEGMENTS: usize = 75;
+/// that agrees less than this with the best place contradicts it, however well others agree.
+const CONTRADICTION: f32 = 0.25;
+/// A lead this clear no look contradicts: the map may have changed; in confidences asked for.
+const BEYOND_DOUBT: f32 = 2.5;
+/// The map's agreement with itself, where it was not measured: what a good calibration gives.
+const USUAL_AGREEMENT: f32 = 0.5;
+
+/// How much of what can be looked at was.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Looked {
+    /// Once.
+    Once,
+    /// More often, and there are turns left.
+    Partly,
+    /// All around; a move is left.
+    AllAround,
+    /// Nothing is left to look at.
+    AtEverything,
+}
+
+/// What is asked of an answer.
+#[derive(Debug)]
+pub(super) struct StopRule {
+    confidence: f32,
+    self_agreement: f32,
+}
+
+impl StopRule {
+    /// The rule for a map that agrees with itself so, as far as is known.
+    pub(super) fn new(confidence: f32, self_agreement: Option<f32>) -> Self {
+        Self { confidence, self_agreement: self_agreement.unwrap_or(USUAL_AGREEMENT) }
+    }
+
+    /// Whether lead and agreement of the best place suffice.
+    pub(super) fn suffices(&self, judgement: &Judgement, looked: Looked) -> bool {
+        let (lead, agreement) = (judgement.confidence, self.agreement(judgement.best.score_q20));
+        let made_up = AGREEMENT_PER_CONFIDENCE * (lead - self.confidence);
+        let early = math::max(ASKED_AGREEMENT - made_up, LEAST_AGREEMENT);
+        let (least_lead, least_agreement) = match looked {
+            Looked::Once => (FIRST_CONFIDENCE, early),
+            Looked::Partly => (1.0, early),
+            Looked::AllAround => (AROUND_CONFIDENCE, LEAST_AGREEMENT),
+            Looked::AtEverything => (LAST_CONFIDENCE, INSIDE_AGREEMENT),
+        };
+        lead > least_lead * self.confidence && agreement >= least_agreement
+    }
+
+    /// Whether the best place agrees well enough for the robot to be in the map.
+    pub(super) fn is_inside(&self, judgement: &Judgement) -> bool {
+        self.agreement(judgement.best.score_q20) >= INSIDE_AGREEMENT
+    }
+
+    /// Whether another view might show that the robot is in the map.
+    pub(super) fn may_be_inside(&self, judgement: &Judgement) -> bool {
+        self.agreement(judgement.best.score_q20) >= DOUBTFUL_AGREEMENT
+    }
+
+    /// Whether the lead is so clear that no look contradicts it.
+    pub(super) fn is_beyond_doubt(&self, judgement: &Judgement) -> bool {
+        judgement.confidence > BEYOND_DOUBT * self.confidence
+    }
+
+    /// Whether a look of so many segments that agrees so contradicts a place.
+    pub(super) fn contradicts(&self, segment_count: usize, score_q20: i32) -> bool {
+        segment_count >= TELLING_SEGMENTS && self.agreement(score_q20) < CONTRADICTION
+    }
+
+    /// A score as a share of the map's agreement with itself.
+    fn agreement(&self, score_q20: i32) -> f32 {
+        score_q20 as f32 / (1 << 20) as f32 / self.self_agreement
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::hypothesis::Hypothesis;
+    use super::*;
+    use crate::database::NodeId;
+    use crate::localize::Rivals;
+
+    fn judgement(confidence: f32, agreement: f32) -> Judgement {
+        let score_q20 = (agreement * 0.5 * (1 << 20) as f32) as i32;
+        let best = Hypothesis { score_q20, ..Hypothesis::new(NodeId(0), [0.0; 2], 0.0) };
+        Judgement { best, confidence, places: Rivals::default() }
+    }
+
+    #[test]
+    fn the_more_was_looked_at_the_less_is_asked() {
+        let rule = StopRule::new(0.4, Some(0.5));
+        let asked = [Looked::Once, Looked::Partly, Looked::AllAround, Looked::AtEverything];
+        for (confidence, expected) in [(0.6, 4), (0.5, 3), (0.3, 2), (0.1, 1), (0.05, 0)] {
+            let judgement = judgement(confidence, 1.3);
+            let sufficed = asked.iter().filter(|looked| rule.suffices(&judgement, **looked)).count();
+            assert_eq!(sufficed, expected, "{confidence}");
+        }
+    }
+
+    #[test]
+    fn a_clear_lead_makes_up_for_agreement_but_not_for_any() {
+        let rule = StopRule::new(0.4, Some(0.5));
+        let suffices = |confidence, agreement| rule.suffices(&judgement(confidence, agreement), Looked::Partly);
+        assert!(suffices(0.45, 1.25) && !suffices(0.45, 1.1));
+        assert!(suffices(0.8, 1.1) && !suffices(0.8, 1.0));
+        assert!(suffices(5.0, 0.91) && !suffices(5.0, 0.89));
+    }
+
+    #[test]
+    fn a_rich_look_that_agrees_with_nothing_contradicts_and_a_poor_one_does_not() {
+        let rule = StopRule::new(0.4, Some(0.5));
+        assert!(rule.contradicts(100, 0) && !rule.contradicts(10, 0) && !rule.contradicts(100, 1 << 18));
+    }
+
+    #[test]
+    fn without_a_measured_agreement_a_usual_one_is_assumed() {
+        let (known, unknown) = (StopRule::new(0.4, Some(USUAL_AGREEMENT)), StopRule::new(0.4, None));
+        for agreement in [0.7, 0.8] {
+            let judgement = judgement(1.0, agreement);
+            assert_eq!(known.is_inside(&judgement), unknown.is_inside(&judgement));
+        }
+    }
+}
