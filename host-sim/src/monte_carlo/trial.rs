@@ -165,8 +165,7 @@ impl<'s> Trial<'s> {
 
     /// Whether one of the rivals is where the robot is.
     fn is_among(&self, rivals: &Rivals, position: Point2, nearest_node: u32) -> bool {
-        let is_here =
-            |rival: &Rival| rival.node.0 == nearest_node || rival.position.distance(position) <= SAME_PLACE_M;
+        let is_here = |rival: &Rival| rival.node.0 == nearest_node || rival.position.distance(position) <= SAME_PLACE_M;
         self.setting.row.start != Start::Unlearned && rivals.iter().any(is_here)
     }
 

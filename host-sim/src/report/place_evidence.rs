@@ -83,7 +83,8 @@ pub(super) fn place_evidence(
     let cell_m = reach_m / CELLS_IN_REACH;
     let mut checks = Checks { checks, cell_m, spread_rad: first.compass_spread.radians() };
     let mut grid = grid(&nodes, reach_m, cell_m);
-    let own_error = Angle::from_radians(first.pose_true.heading.angle().radians() - first.compass.angle().radians()).wrapped();
+    let own_error =
+        Angle::from_radians(first.pose_true.heading.angle().radians() - first.compass.angle().radians()).wrapped();
     let (mut seen_q4, mut segments, mut found) = (0, 0, Vec::new());
     for (index, look) in looks.iter().enumerate() {
         seen_q4 += seen_length_q4(look, map, config);

@@ -12,8 +12,8 @@
 
 use super::{
     ActsIn, CameraCalibration, CameraTilt, Clutter, Compass, CornerDetectionLoss, CornerMatch, EdgeDetectionLoss,
-    EpipolarRemoval, GeometricApproximation, ImageNoise, LateralEdgeShift, Occlusion, Odometry, PolarityFlips, SourceFacts,
-    SourceNumber, SourceSetting, StereoMatch, UncertaintySource,
+    EpipolarRemoval, GeometricApproximation, ImageNoise, LateralEdgeShift, Occlusion, Odometry, PolarityFlips,
+    SourceFacts, SourceNumber, SourceSetting, StereoMatch, UncertaintySource,
 };
 use crate::camera::StereoObservation;
 use crate::random::Stream;

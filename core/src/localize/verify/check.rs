@@ -2,7 +2,7 @@
 
 use super::Evidence;
 use super::channel::{CHANNELS, channel_in_lane};
-use super::distance_planes::{DistancePlanes, PLANE};
+use super::distance_planes::DistancePlanes;
 use super::image_frame::ImageFrame;
 use super::kept_looks::{KeptLooks, LookPose};
 use super::lanes::{LANES, Lane, LanePart, MAX_POINTS, SegmentEnds, Tables, rounded};
@@ -192,14 +192,14 @@ impl<'m> Checker<'m> {
                 continue;
             }
             let mut width = [0_u32; LANES];
-            let mut plane = [0_u32; LANES];
+            let mut channel = [0_u32; LANES];
             let mut background = [0_i32; LANES];
             let mut weight = [0_i32; LANES];
             for lane in 0..LANES {
                 let tolerance = fixed_part + depth_part * image.inverse_depth[lane] * image.inverse_depth[lane];
                 width[lane] =
                     u32::from(tolerance > 100.0) + u32::from(tolerance > 400.0) + u32::from(tolerance > 1600.0);
-                plane[lane] = channel_in_lane(image.way[0][lane], image.way[1][lane]);
+                channel[lane] = channel_in_lane(image.way[0][lane], image.way[1][lane]);
             }
             let count = Self::point_count(segment, per_px);
             let share = 0.25 * POINT_SHARES[count];
@@ -212,13 +212,12 @@ impl<'m> Checker<'m> {
                 }
             }
             for lane in 0..LANES {
-                let (channel, width) = (plane[lane] as usize & (CHANNELS - 1), width[lane] as usize & 3);
+                let (channel, width) = (channel[lane] as usize & (CHANNELS - 1), width[lane] as usize & 3);
                 background[lane] = i32::from(backgrounds[channel][width]);
                 let length_q4 = if is_seen[lane] { rounded(image.length[lane] * 16.0) } else { 0 };
                 weight[lane] = (length_q4 * WEIGHTS_Q8[width]) >> 8;
-                plane[lane] *= PLANE as u32;
             }
-            let sum = tables.sum(count, (first, step), &plane, &width);
+            let sum = tables.sum(count, (first, step), &channel, &width);
             let share_q16 = POINT_SHARES_Q16[count];
             for lane in 0..LANES {
                 // At most 16,384 x 255: far from the border of i32.

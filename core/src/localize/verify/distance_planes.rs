@@ -10,50 +10,53 @@ pub(super) const COLUMNS: usize = 160;
 pub(super) const ROWS: usize = 120;
 /// Pixels of a plane.
 pub(super) const PLANE: usize = COLUMNS * ROWS;
+/// The distances of all channels at one pixel.
+pub(super) type Pixel = [u8; CHANNELS];
 /// Units of distance from a pixel to the next; 255 units and beyond are far.
 pub(super) const UNITS_PER_PIXEL: i32 = 5;
 
-/// One plane of distances for each orientation channel.
+/// One plane of distances for each orientation channel, pixel by pixel.
 #[derive(Debug)]
 pub(super) struct DistancePlanes<'m> {
-    planes: &'m mut [u8; CHANNELS * PLANE],
+    distances: &'m mut [u8; CHANNELS * PLANE],
 }
 
 impl<'m> DistancePlanes<'m> {
     /// Bytes of all planes.
     pub(super) const BYTES: usize = CHANNELS * PLANE;
 
-    /// Planes in `planes`, still without meaning.
-    pub(super) fn new(planes: &'m mut [u8; CHANNELS * PLANE]) -> Self {
-        Self { planes }
+    /// Planes in `distances`, still without meaning.
+    pub(super) fn new(distances: &'m mut [u8; CHANNELS * PLANE]) -> Self {
+        Self { distances }
     }
 
-    /// The planes of all channels, one behind the other.
+    /// The distances of all channels at the first pixel, at the next, and so on.
     pub(super) const fn all(&self) -> &[u8; CHANNELS * PLANE] {
-        self.planes
+        self.distances
     }
 
-    /// The plane of a channel.
-    pub(super) fn plane(&self, channel: usize) -> &[u8] {
-        &self.planes[channel * PLANE..][..PLANE]
+    /// All pixels.
+    pub(super) const fn pixels(&self) -> &[Pixel] {
+        self.distances.as_chunks().0
     }
 
     /// Measures all distances anew, from `segments`: each in its own channel and the next nearest.
     pub(super) fn redraw(&mut self, segments: &[SeenSegment]) {
-        self.planes.fill(u8::MAX);
+        self.distances.fill(u8::MAX);
+        let (pixels, _) = self.distances.as_chunks_mut();
         for segment in segments {
             let (dx, dy) = segment.direction_q4();
             let (dx, dy) = (dx as f32, dy as f32);
             for channel in [channel_of(dx, dy), neighbor_of(dx, dy)] {
-                draw(&mut self.planes[channel * PLANE..][..PLANE], segment);
+                draw(pixels, channel, segment);
             }
         }
-        spread(self.planes);
+        spread(pixels);
     }
 }
 
-/// Sets the pixels along a segment to their distance from it, measured along the shorter axis.
-fn draw(plane: &mut [u8], segment: &SeenSegment) {
+/// Sets the pixels along a segment in a channel to their distance from it, measured along the shorter axis.
+fn draw(pixels: &mut [Pixel], channel: usize, segment: &SeenSegment) {
     let (dx, dy) = segment.direction_q4();
     let is_steep = dy.abs() > dx.abs();
     let along_across = |point: [i16; 2]| {
@@ -75,8 +78,8 @@ fn draw(plane: &mut [u8], segment: &SeenSegment) {
             let distance = ((across - (pixel * 64 + 32)).abs() * UNITS_PER_PIXEL + 32) >> 6;
             let (column, row) = if is_steep { (pixel, along) } else { (along, pixel) };
             if (0..COLUMNS as i32).contains(&column) && (0..ROWS as i32).contains(&row) {
-                let cell = &mut plane[row as usize * COLUMNS + column as usize];
-                *cell = (*cell).min(distance as u8);
+                let nearest = &mut pixels[row as usize * COLUMNS + column as usize][channel];
+                *nearest = (*nearest).min(distance as u8);
             }
         }
     }

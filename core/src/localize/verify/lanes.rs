@@ -71,20 +71,20 @@ impl LanePart {
 /// Tables that lanes look things up in.
 #[derive(Debug)]
 pub(super) struct Tables<'t> {
-    /// The distance planes of all channels.
+    /// The distances of all channels, pixel by pixel.
     pub(super) planes: &'t [u8; CHANNELS * PLANE],
     /// Response of each width to each distance.
     pub(super) responses: &'t [[u8; 256]; WIDTHS_PX.len()],
 }
 
 impl Tables<'_> {
-    /// The sum of responses at `count` points of a plane, from `first` on and `step` apart, in plane pixels.
+    /// The sum of responses at `count` points in a channel, from `first` on and `step` apart, in plane pixels.
     #[inline(always)]
     pub(super) fn sum(
         &self,
         count: usize,
         (first, step): ([Lane<f32>; 2], [Lane<f32>; 2]),
-        plane: &Lane<u32>,
+        channel: &Lane<u32>,
         width: &Lane<u32>,
     ) -> Lane<i32> {
         let [mut x, mut y] = first;
@@ -95,7 +95,7 @@ impl Tables<'_> {
                 // Half a pixel less, so that rounding gives the pixel that holds the point.
                 let column = (rounded(x[lane] - 0.5) as u32).min(COLUMNS as u32 - 1);
                 let row = (rounded(y[lane] - 0.5) as u32).min(ROWS as u32 - 1);
-                at[lane] = plane[lane] + row * COLUMNS as u32 + column;
+                at[lane] = (row * COLUMNS as u32 + column) * CHANNELS as u32 + channel[lane];
                 x[lane] += step[0][lane];
                 y[lane] += step[1][lane];
             }

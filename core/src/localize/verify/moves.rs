@@ -43,9 +43,8 @@ impl Moves {
 
     /// Whether a robot that stands here was blocked on the way along a heading as told.
     pub(super) fn is_blocked(&self, heading_rad: f32) -> bool {
-        let is_alike = |blocked: &f32| {
-            math::abs(Angle::from_radians(heading_rad - blocked).wrapped().radians()) < ALIKE_RAD
-        };
+        let is_alike =
+            |blocked: &f32| math::abs(Angle::from_radians(heading_rad - blocked).wrapped().radians()) < ALIKE_RAD;
         self.blocked_rad[..self.blocked].iter().any(is_alike)
     }
 }

@@ -74,9 +74,8 @@ pub(super) fn most_telling_turn(
     for step in 1..max_looks {
         let onward = Angle::from_radians(turn.radians() * f32::from(step)).wrapped();
         let ahead = LookPose { heading_rad: last.heading_rad + onward.radians(), ..last };
-        let apart_rad = |look: &LookPose| {
-            math::abs(Angle::from_radians(look.heading_rad - ahead.heading_rad).wrapped().radians())
-        };
+        let apart_rad =
+            |look: &LookPose| math::abs(Angle::from_radians(look.heading_rad - ahead.heading_rad).wrapped().radians());
         if looks.here().iter().any(|look| apart_rad(look) < 0.5 * math::abs(turn.radians())) {
             continue;
         }

@@ -31,13 +31,16 @@ impl Responses {
 
     /// Measures the background of newly drawn planes.
     pub(super) fn measure_background(&mut self, planes: &DistancePlanes<'_>) {
-        for (channel, background) in self.background.iter_mut().enumerate() {
-            let mut counts = [0_u32; 256];
-            for distance in planes.plane(channel) {
+        let mut counts = [[0_u16; 256]; CHANNELS];
+        for pixel in planes.pixels() {
+            for (counts, distance) in counts.iter_mut().zip(pixel) {
                 counts[usize::from(*distance)] += 1;
             }
+        }
+        for (background, counts) in self.background.iter_mut().zip(&counts) {
             for (mean, table) in background.iter_mut().zip(&self.table) {
-                let sum: u32 = counts.iter().zip(table).map(|(count, response)| count * u32::from(*response)).sum();
+                let both = counts.iter().zip(table);
+                let sum: u32 = both.map(|(count, response)| u32::from(*count) * u32::from(*response)).sum();
                 *mean = (sum / PLANE as u32) as u8;
             }
         }

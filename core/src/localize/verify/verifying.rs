@@ -1,6 +1,5 @@
 //! The verifying localiser: poses around every node, checked against all looks.
 
-use super::{NextLook, VerificationConfig};
 use super::check::Checker;
 use super::hypothesis::Hypothesis;
 use super::judgement::{Judgement, judge, nearest_node};
@@ -11,6 +10,7 @@ use super::next_look::{most_telling_move, most_telling_turn};
 use super::pose_fit::fit;
 use super::search::{Search, agreement_of_look};
 use super::stop_rule::{Looked, StopRule};
+use super::{NextLook, VerificationConfig};
 use crate::database::{NodeId, TopologicalDatabase};
 use crate::geometry::{Angle, Heading, Point2};
 use crate::localize::segment_filter::SegmentFilter;

@@ -16,7 +16,6 @@ pub(super) struct Smlad;
 
 impl Body for Smlad {
     const NAME: &'static str = "SMLAD";
-    const IS_WIDE: bool = false;
 
     #[inline(always)]
     fn best_coefficient(self, row: &[BinPair], panel: &[PanelRow]) -> i32 {

@@ -24,9 +24,6 @@ pub(crate) trait Body: Copy {
     /// What it is called.
     const NAME: &'static str;
 
-    /// Whether a loop over bytes turns into vectors of them.
-    const IS_WIDE: bool;
-
     /// The best coefficient in Q30 of one scene row with a panel's lines; 0 if none is positive.
     fn best_coefficient(self, row: &[BinPair], panel: &[PanelRow]) -> i32;
 

@@ -15,7 +15,6 @@ pub(super) struct Neon;
 
 impl Body for Neon {
     const NAME: &'static str = "NEON";
-    const IS_WIDE: bool = true;
 
     #[inline(always)]
     fn best_coefficient(self, row: &[BinPair], panel: &[PanelRow]) -> i32 {

@@ -9,7 +9,6 @@ pub(super) struct Portable;
 
 impl Body for Portable {
     const NAME: &'static str = "portable";
-    const IS_WIDE: bool = false;
 
     #[inline(always)]
     fn best_coefficient(self, row: &[BinPair], panel: &[PanelRow]) -> i32 {

@@ -10,7 +10,6 @@ pub(super) struct Simd128;
 
 impl Body for Simd128 {
     const NAME: &'static str = "WebAssembly SIMD";
-    const IS_WIDE: bool = true;
 
     #[inline(always)]
     fn best_coefficient(self, row: &[BinPair], panel: &[PanelRow]) -> i32 {

@@ -20,7 +20,6 @@ impl Avx2 {
 
 impl Body for Avx2 {
     const NAME: &'static str = "AVX2";
-    const IS_WIDE: bool = true;
 
     #[inline(always)]
     fn best_coefficient(self, row: &[BinPair], panel: &[PanelRow]) -> i32 {

@@ -24,7 +24,6 @@ impl Avx512 {
 
 impl Body for Avx512 {
     const NAME: &'static str = "AVX-512 VNNI";
-    const IS_WIDE: bool = true;
 
     #[inline(always)]
     fn best_coefficient(self, row: &[BinPair], panel: &[PanelRow]) -> i32 {

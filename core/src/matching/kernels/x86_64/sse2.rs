@@ -11,7 +11,6 @@ pub(super) struct Sse2;
 
 impl Body for Sse2 {
     const NAME: &'static str = "SSE2";
-    const IS_WIDE: bool = true;
 
     #[inline(always)]
     fn best_coefficient(self, row: &[BinPair], panel: &[PanelRow]) -> i32 {
