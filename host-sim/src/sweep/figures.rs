@@ -197,6 +197,7 @@ mod tests {
             is_near_tie: false,
             unknown_kind: None,
             rivals: None,
+            driven_m: 0.0,
             looks: 1,
             scene_segments: 50,
             scored_nodes: 72,

@@ -9,7 +9,7 @@ use super::judgement::Judgement;
 use crate::math;
 
 /// Confidence that the first look alone asks for, in confidences asked for.
-const FIRST_CONFIDENCE: f32 = 1.375;
+const FIRST_CONFIDENCE: f32 = 1.25;
 /// Having looked all around, before a move.
 const AROUND_CONFIDENCE: f32 = 0.45;
 /// When nothing is left to look at.
