@@ -6,16 +6,17 @@ use crate::source::root_references;
 /// A module at the root of a crate and the modules there that it may know besides itself.
 type Arrow = (&'static str, &'static [&'static str]);
 
-/// `math < geometry < pgh < matching`, `geometry < stereo`, `geometry < explore`, `geometry < database`; `localize` alone knows database and matching both.
+/// `math < geometry < pgh < matching < gist`, `geometry < stereo`, `geometry < explore`, `geometry < database`; `localize` alone knows database and matching both.
 const CORE: &[Arrow] = &[
     ("math", &[]),
     ("geometry", &["math"]),
     ("stereo", &["math", "geometry"]),
     ("pgh", &["math", "geometry"]),
     ("matching", &["math", "geometry", "pgh"]),
+    ("gist", &["math", "geometry", "matching"]),
     ("database", &["math", "geometry"]),
     ("explore", &["math", "geometry"]),
-    ("localize", &["math", "geometry", "pgh", "matching", "database"]),
+    ("localize", &["math", "geometry", "pgh", "matching", "gist", "database"]),
 ];
 
 /// `random, whole_file < world < camera < uncertainty < learning < scenario < monte_carlo < sweep < report < cli`; an uncertainty
