@@ -6,9 +6,11 @@
 
 pub mod format;
 mod index;
+mod joining;
 mod reader;
 mod writer;
 
 pub use index::{IndexError, IndexParts, IndexShape, ViewIndex, begin_index, indexed_len, seal};
+pub use joining::{joined_header, moved_node};
 pub use reader::{Node, NodeId, OpenError, TopologicalDatabase};
 pub use writer::{NodeModel, StateError, WriteError, encoded_len, state_self_agreement, write};

@@ -4,7 +4,7 @@ use super::ViewIndex;
 use super::format::{self, HEADER_LEN, Header, NodeEntry, SegmentEntry};
 use crate::geometry::{CameraError, PinholeCamera, Point2, Point3, Polarity, RigError, Segment3, StereoRig};
 use core::fmt;
-use zerocopy::FromBytes;
+use zerocopy::{FromBytes, IntoBytes};
 
 /// Identity of a node: its index in the database.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
@@ -104,6 +104,18 @@ impl<'a> TopologicalDatabase<'a> {
     #[must_use]
     pub const fn index(&self) -> Option<&ViewIndex<'a>> {
         self.index.as_ref()
+    }
+
+    /// The same map as if it had no index.
+    #[must_use]
+    pub fn without_index(self) -> Self {
+        Self { index: None, ..self }
+    }
+
+    /// The bytes of all segments, node after node.
+    #[must_use]
+    pub fn segment_bytes(&self) -> &'a [u8] {
+        self.segments.as_bytes()
     }
 
     /// Length of the database in bytes.

@@ -115,7 +115,7 @@ impl fmt::Display for StateError {
 
 impl core::error::Error for StateError {}
 
-fn header_of(rig: &StereoRig, views_per_node: u16, lengths: [usize; 3]) -> Header {
+pub(super) fn header_of(rig: &StereoRig, views_per_node: u16, lengths: [usize; 3]) -> Header {
     let [length, node_count, segment_count] = lengths.map(|value| (value as u32).into());
     Header {
         magic: format::MAGIC,
@@ -139,15 +139,19 @@ fn header_of(rig: &StereoRig, views_per_node: u16, lengths: [usize; 3]) -> Heade
 }
 
 fn node_entry(node: &NodeModel<'_>, first_segment: u32) -> Option<NodeEntry> {
+    Some(NodeEntry {
+        position_mm: position_mm(node.position)?,
+        first_segment: first_segment.into(),
+        segment_count: (node.segments.len() as u32).into(),
+    })
+}
+
+pub(super) fn position_mm(position: Point2) -> Option<[I32; 2]> {
     let mm = |metres: f32| -> Option<I32> {
         let millimetres = math::round(metres * 1000.0);
         (math::abs(millimetres) <= 2.0e9).then(|| (millimetres as i32).into())
     };
-    Some(NodeEntry {
-        position_mm: [mm(node.position.x)?, mm(node.position.y)?],
-        first_segment: first_segment.into(),
-        segment_count: (node.segments.len() as u32).into(),
-    })
+    Some([mm(position.x)?, mm(position.y)?])
 }
 
 fn segment_entry(segment: &Segment3) -> Option<SegmentEntry> {

@@ -19,17 +19,21 @@ const CORE: &[Arrow] = &[
     ("localize", &["math", "geometry", "pgh", "matching", "gist", "database"]),
 ];
 
-/// `random, whole_file < world < camera < uncertainty < learning < scenario < monte_carlo < sweep < report < cli`; an uncertainty
+/// `random, whole_file, map_file < world < camera < uncertainty < learning < scenario < monte_carlo < sweep < report < cli`; an uncertainty
 /// source never sees the world.
 const HOST_SIM: &[Arrow] = &[
     ("random", &[]),
     ("whole_file", &[]),
+    ("map_file", &[]),
     ("world", &["random", "whole_file"]),
     ("camera", &["random", "world"]),
     ("uncertainty", &["random", "camera"]),
-    ("learning", &["random", "world", "camera", "uncertainty"]),
+    ("learning", &["random", "map_file", "world", "camera", "uncertainty"]),
     ("scenario", &["random", "world", "camera", "uncertainty", "learning"]),
-    ("monte_carlo", &["random", "world", "camera", "uncertainty", "learning", "scenario"]),
+    (
+        "monte_carlo",
+        &["random", "whole_file", "map_file", "world", "camera", "uncertainty", "learning", "scenario"],
+    ),
     ("sweep", &["random", "scenario", "monte_carlo"]),
     (
         "report",
@@ -40,6 +44,7 @@ const HOST_SIM: &[Arrow] = &[
         &[
             "random",
             "whole_file",
+            "map_file",
             "world",
             "camera",
             "uncertainty",

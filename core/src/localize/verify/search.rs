@@ -7,6 +7,8 @@ use super::headings::Headings;
 use super::hypothesis::{Hypothesis, keep_best};
 use super::kept_looks::KeptLooks;
 use super::lanes::LANES;
+use super::shortlist::Shortlist;
+use super::slots::Slots;
 use super::spacing::reach_m;
 use super::{Evidence, VerificationConfig};
 use crate::database::TopologicalDatabase;
@@ -51,6 +53,8 @@ pub(super) struct Search<'m> {
     headings: Headings,
     /// Where most level edges of the map run, once somebody asked.
     dominant_rad: Option<f32>,
+    /// Which node each part of the cells belongs to.
+    slots: Slots<'m>,
     cells: &'m mut [CellEvidence],
     ranked: &'m mut [Hypothesis],
     ranked_count: usize,
@@ -63,6 +67,7 @@ impl<'m> Search<'m> {
     pub(super) fn new(
         config: &VerificationConfig,
         database: &TopologicalDatabase<'_>,
+        slots: Slots<'m>,
         (cells, ranked, refined, children): SearchMemory<'m>,
     ) -> Self {
         let mut search = Self {
@@ -70,6 +75,7 @@ impl<'m> Search<'m> {
             cell_m: reach_m(database) / f32::from(config.cells_per_side / 2),
             headings: Headings::about_compass(0.0, 1),
             dominant_rad: None,
+            slots,
             cells,
             ranked,
             ranked_count: 0,
@@ -83,6 +89,7 @@ impl<'m> Search<'m> {
 
     /// Forgets all evidence.
     pub(super) fn clear(&mut self) {
+        self.slots.clear();
         self.cells.fill(CellEvidence::default());
         (self.ranked_count, self.refined_count) = (0, 0);
     }
@@ -97,25 +104,44 @@ impl<'m> Search<'m> {
         &self.ranked[..self.ranked_count]
     }
 
-    /// Takes the last of `looks` into account.
+    /// The nodes that have a grid, where a first stage chooses them.
+    pub(super) const fn slots(&self) -> &Slots<'m> {
+        &self.slots
+    }
+
+    /// Takes the last of `looks` into account; of maps that have one, the shortlist tells about which nodes.
     pub(super) fn look(
         &mut self,
         database: &TopologicalDatabase<'_>,
         checker: &mut Checker<'_>,
         looks: &KeptLooks<'_>,
+        shortlist: Option<&mut Shortlist<'_>>,
     ) {
         let Some(last) = looks.count().checked_sub(1) else { return };
         let headings = self.headings_for(database, looks);
-        if last > 0 && headings.is_like(&self.headings) {
-            self.check_grid(last, database, checker, looks);
-        } else {
+        let changed = last == 0 || !headings.is_like(&self.headings);
+        if changed {
             // The first look; or more looks tell better how the building lies, and all is to be checked anew.
             self.headings = headings;
             self.cells.fill(CellEvidence::default());
-            for look in 0..=last {
-                self.check_grid(look, database, checker, looks);
+            self.slots.uncover();
+        }
+        if let Some(shortlist) = shortlist {
+            let poses = usize::from(self.config.headings) * self.config.cells_per_node();
+            let (kept, cells) = (&self.refined[..self.refined_count], &mut *self.cells);
+            shortlist.choose(&mut self.slots, (looks, &self.headings, changed), kept, |slot| {
+                cells[slot * poses..][..poses].fill(CellEvidence::default());
+            });
+        }
+        // Nodes that were just chosen catch up with the looks before.
+        let first = if changed || self.slots.are_chosen() { 0 } else { last };
+        for look in first..=last {
+            self.check_grid(look, database, checker, looks);
+            if changed || look == last {
+                self.refute(looks);
             }
         }
+        self.slots.cover(last);
         self.refined_count = self.ranked_count.min(self.refined.len());
         self.refined[..self.refined_count].copy_from_slice(&self.ranked[..self.refined_count]);
         let [coarse, close] = &STAGES;
@@ -168,9 +194,10 @@ impl<'m> Search<'m> {
         let cell_m = self.cell_m;
         let offset_of = |index: i32| [(index % side - half) as f32 * cell_m, (index / side - half) as f32 * cell_m];
         self.ranked_count = 0;
-        for (node, cells) in
-            database.nodes().zip(self.cells.chunks_exact_mut(usize::from(self.config.headings) * per_heading))
-        {
+        let per_node = usize::from(self.config.headings) * per_heading;
+        for (slot, cells) in self.cells.chunks_exact_mut(per_node).enumerate() {
+            let lacking = self.slots.node_lacking(slot, look);
+            let Some(node) = lacking.and_then(|id| database.node(id)) else { continue };
             let none = Hypothesis::new(node.id(), [0.0; 2], 0.0);
             let (mut best, mut count) = ([none; VerificationConfig::PER_NODE], 0);
             for (&heading_error_rad, cells) in headings.errors_rad().iter().zip(cells.chunks_exact_mut(per_heading)) {
@@ -206,9 +233,12 @@ impl<'m> Search<'m> {
             self.ranked[self.ranked_count..][..count].copy_from_slice(&best[..count]);
             self.ranked_count += count;
         }
-        let ranked = &mut self.ranked[..self.ranked_count];
-        ranked.sort_unstable_by(Hypothesis::rank);
-        if let Some(best) = ranked.first() {
+        self.ranked[..self.ranked_count].sort_unstable_by(Hypothesis::rank);
+    }
+
+    /// Gives cells up that are far behind the best.
+    fn refute(&mut self, looks: &KeptLooks<'_>) {
+        if let Some(best) = self.ranked[..self.ranked_count].first() {
             let floor_q20 = refutation_floor_q20(best.score_q20, looks.seen_q4());
             for cell in self.cells.iter_mut() {
                 cell.refute_below(floor_q20, looks.seen_q4());

@@ -8,8 +8,12 @@ use super::kept_looks::KeptLooks;
 use super::memory::Memory;
 use super::pose_fit::fit;
 use super::search::Search;
+use super::shortlist::Shortlist;
+use super::slots::Slots;
 use crate::database::{NodeId, TopologicalDatabase};
 use crate::geometry::{Angle, Heading, Point2};
+use crate::localize::extent::Extent;
+use crate::localize::first_stage::FirstStage;
 use crate::localize::segment_filter::SegmentFilter;
 use crate::localize::{
     CandidateSet, Decision, Localized, LocalizerConfig, Look, ObserveError, PoseEstimate, StartError, UnknownReason,
@@ -37,6 +41,7 @@ pub(in crate::localize) struct VerifyingLocalizer<'m> {
     least_scores_q20: [i32; 2],
     checker: Checker<'m>,
     looks: KeptLooks<'m>,
+    shortlist: Option<Shortlist<'m>>,
     search: Search<'m>,
     candidates: CandidateSet<'m>,
     is_finished: bool,
@@ -51,8 +56,13 @@ impl<'m> VerifyingLocalizer<'m> {
         memory: &'m mut [u64],
     ) -> Result<Self, StartError> {
         let config = config.checked().map_err(StartError::Config)?;
-        let memory =
-            Memory::divide(memory, &config, verification, database.node_count()).map_err(StartError::Memory)?;
+        let extent = Extent::of(&config, &database);
+        let memory = Memory::divide(memory, &config, verification, extent).map_err(StartError::Memory)?;
+        let index = database.index().filter(|_| extent.has_first_stage());
+        let shortlist = index.map(|index| {
+            let stage = FirstStage::new(*index, database.rig().camera, memory.similarities);
+            Shortlist::new(stage, memory.codes, memory.chosen)
+        });
         let search_memory = (memory.cells, memory.ranked, memory.refined, memory.children);
         Ok(Self {
             database,
@@ -64,7 +74,8 @@ impl<'m> VerifyingLocalizer<'m> {
             }),
             checker: Checker::new(database.rig(), SegmentFilter::new(&config), memory.planes, memory.view),
             looks: KeptLooks::new(memory.poses, memory.segments),
-            search: Search::new(verification, &database, search_memory),
+            shortlist,
+            search: Search::new(verification, &database, Slots::new(memory.slots), search_memory),
             candidates: CandidateSet::new(memory.node_scores),
             is_finished: false,
         })
@@ -80,13 +91,16 @@ impl<'m> VerifyingLocalizer<'m> {
         }
         let (filter, frame) = (*self.checker.filter(), *self.checker.frame());
         self.looks.push((look.heading, look.motion_since_last), look.scene.segments(), &filter, &frame);
-        self.search.look(&self.database, &mut self.checker, &self.looks);
+        if let Some(shortlist) = &mut self.shortlist {
+            shortlist.keep(self.looks.count() - 1, look.scene.segments());
+        }
+        self.search.look(&self.database, &mut self.checker, &self.looks, self.shortlist.as_mut());
         let Self { search, candidates, .. } = self;
-        candidates.replace(|node| {
-            let of_node = |hypothesis: &&Hypothesis| hypothesis.node() == node;
-            let scores = search.places().iter().chain(search.ranked()).filter(of_node);
-            scores.map(|hypothesis| i64::from(hypothesis.score_q20) << 10).max().unwrap_or(0)
-        });
+        let score = |hypothesis: &Hypothesis| (hypothesis.node(), i64::from(hypothesis.score_q20) << 10);
+        candidates.replace(search.places().iter().chain(search.ranked()).map(score));
+        if search.slots().are_chosen() {
+            candidates.restrict(search.slots().nodes());
+        }
         let decision = self.decide();
         self.is_finished = !matches!(decision, Decision::LookAgain { .. });
         Ok(decision)
@@ -95,6 +109,7 @@ impl<'m> VerifyingLocalizer<'m> {
     /// Forgets all looks.
     pub(in crate::localize) fn reset(&mut self) {
         self.looks.clear();
+        self.shortlist.iter_mut().for_each(Shortlist::clear);
         self.checker.forget();
         self.search.clear();
         self.candidates.reset();

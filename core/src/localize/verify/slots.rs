@@ -1,0 +1,86 @@
+//! Which nodes have a grid, where there is none for every node of the map.
+
+use super::hypothesis::Hypothesis;
+use crate::database::NodeId;
+use zerocopy::{FromBytes, Immutable, IntoBytes};
+
+/// A place for a node's grid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, FromBytes, IntoBytes, Immutable)]
+#[repr(C)]
+pub(super) struct Slot {
+    node: u32,
+    /// Looks that its evidence is of.
+    looks: u32,
+}
+
+impl Slot {
+    const EMPTY: Self = Self { node: u32::MAX, looks: 0 };
+}
+
+/// The slots; none stands for one for every node, in their order.
+#[derive(Debug)]
+pub(super) struct Slots<'m> {
+    slots: &'m mut [Slot],
+}
+
+impl<'m> Slots<'m> {
+    /// All empty.
+    pub(super) fn new(slots: &'m mut [Slot]) -> Self {
+        let mut slots = Self { slots };
+        slots.clear();
+        slots
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.slots.fill(Slot::EMPTY);
+    }
+
+    /// Whether nodes are chosen, not all there.
+    pub(super) const fn are_chosen(&self) -> bool {
+        !self.slots.is_empty()
+    }
+
+    /// The node of the grid at `index`, if its evidence lacks the look.
+    pub(super) fn node_lacking(&self, index: usize, look: usize) -> Option<NodeId> {
+        match self.slots.get(index) {
+            None => Some(NodeId(index as u32)),
+            Some(slot) => (slot.looks as usize <= look).then_some(NodeId(slot.node)),
+        }
+    }
+
+    /// Takes down that the evidence of all is of all looks up to this one.
+    pub(super) fn cover(&mut self, look: usize) {
+        self.slots.iter_mut().for_each(|slot| slot.looks = look as u32 + 1);
+    }
+
+    /// Takes down that there is no evidence.
+    pub(super) fn uncover(&mut self) {
+        self.slots.iter_mut().for_each(|slot| slot.looks = 0);
+    }
+
+    /// The nodes that have a grid.
+    pub(super) fn nodes(&self) -> impl Iterator<Item = NodeId> {
+        self.slots.iter().filter(|slot| **slot != Slot::EMPTY).map(|slot| NodeId(slot.node))
+    }
+
+    /// Gives grids to the `chosen` nodes; those of them and of the `kept` hypotheses that have one keep it. Tells `renew` of
+    /// each slot that changes hands. Of more nodes than slots the last have none.
+    pub(super) fn choose(&mut self, chosen: &[u32], kept: &[Hypothesis], mut renew: impl FnMut(usize)) {
+        for slot in self.slots.iter_mut() {
+            if !chosen.contains(&slot.node) && !kept.iter().any(|hypothesis| hypothesis.node == slot.node) {
+                *slot = Slot::EMPTY;
+            }
+        }
+        let mut from = 0;
+        for &node in chosen {
+            if self.slots.iter().any(|slot| slot.node == node) {
+                continue;
+            }
+            let empty = self.slots.iter().skip(from).position(|slot| *slot == Slot::EMPTY);
+            let Some(index) = empty.map(|place| from + place) else { return };
+            self.slots[index] = Slot { node, looks: 0 };
+            renew(index);
+            from = index + 1;
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! A campus: many generated offices, each of a seed of its own, on a lattice far enough apart that none sees another.
+
+use super::{Site, SiteError};
+use crate::learning::CalibratedRig;
+use crate::scenario::{Building, Scenario, ScenarioError};
+use crate::whole_file;
+use crate::world::WireframeWorld;
+use crate::world::office::{self, OfficeOptions};
+use edgeloc::database::WriteError;
+use edgeloc::geometry::Point2;
+use rayon::prelude::*;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Buildings stand so far apart, middle to middle, along either axis \[m\].
+const PITCH_M: f32 = 40.0;
+/// Buildings in a row of the lattice.
+const ROW: u32 = 40;
+
+/// Offices of consecutive seeds.
+#[derive(Debug, Clone)]
+pub struct Campus {
+    scenario: Scenario,
+    first_seed: u64,
+    /// One robot learns all buildings: as it was calibrated in the first.
+    robot: Arc<CalibratedRig>,
+}
+
+impl Campus {
+    /// Offices that the bundled scenario `edgeloc` learns and whose robots it puts down, the first of that seed.
+    ///
+    /// # Errors
+    /// When a setting is illegal, or the first building can't be made ready.
+    pub fn new(first_seed: u64, settings: &[String]) -> Result<Self, CampusError> {
+        let mut scenario = Scenario::load("edgeloc", settings).map_err(Box::new)?;
+        scenario.seed = first_seed;
+        let first = Site::prepare(office_of(first_seed), &scenario)?;
+        let robot = Arc::new(first.calibrated_rig(&scenario.uncertainty, first_seed, 0));
+        Ok(Self { scenario, first_seed, robot })
+    }
+
+    /// Nodes of each building.
+    #[must_use]
+    pub const fn nodes_per_building(&self) -> u32 {
+        self.scenario.learning.nodes as u32
+    }
+
+    /// The scenario of one building.
+    #[must_use]
+    pub fn scenario(&self, building: u32) -> Scenario {
+        let mut scenario = self.scenario.clone();
+        scenario.seed = self.first_seed + u64::from(building);
+        scenario.world.building = Building::Office { seed: scenario.seed };
+        scenario
+    }
+
+    /// Where a building's own origin lies in the world of the campus \[m\].
+    #[must_use]
+    pub fn origin(&self, building: u32) -> Point2 {
+        Point2::new((building % ROW) as f32 * PITCH_M, (building / ROW) as f32 * PITCH_M)
+    }
+
+    /// A building made ready for learning and trials, in its own frame.
+    ///
+    /// # Errors
+    /// When its nodes can't be placed.
+    pub fn site(&self, building: u32) -> Result<Site, SiteError> {
+        let scenario = self.scenario(building);
+        let mut site = Site::prepare(office_of(scenario.seed), &scenario)?;
+        site.robot = Some(self.robot.clone());
+        Ok(site)
+    }
+
+    /// The file in `folder` that holds a building's map.
+    #[must_use]
+    pub fn map_path(&self, folder: &Path, building: u32) -> PathBuf {
+        folder.join(format!("office-{}.edgemap", self.first_seed + u64::from(building)))
+    }
+
+    /// Learns the first `count` buildings, those whose maps are not in `folder` yet, in parallel; tells `on_building` of each.
+    ///
+    /// # Errors
+    /// When a building can't be learned or a file not be written; those done are kept.
+    pub fn learn(&self, folder: &Path, count: u32, on_building: &(dyn Fn() + Sync)) -> Result<(), CampusError> {
+        (0..count).into_par_iter().try_for_each(|building| {
+            let path = self.map_path(folder, building);
+            if !path.exists() {
+                let bytes = self.site(building)?.learn_map(&self.scenario(building), 0)?;
+                whole_file::write(&path, &bytes).map_err(|error| CampusError::File { path, error })?;
+            }
+            on_building();
+            Ok(())
+        })
+    }
+}
+
+fn office_of(seed: u64) -> WireframeWorld {
+    office::generate(&OfficeOptions { seed, ..OfficeOptions::default() })
+}
+
+/// Why a campus can't be learned.
+#[derive(Debug, thiserror::Error)]
+pub enum CampusError {
+    /// A setting is illegal.
+    #[error(transparent)]
+    Scenario(#[from] Box<ScenarioError>),
+    /// A building can't be made ready.
+    #[error(transparent)]
+    Site(#[from] SiteError),
+    /// What was learned does not fit the format.
+    #[error("the learned map can't be written: {0}")]
+    Write(#[from] WriteError),
+    /// A file can't be read or written.
+    #[error("{}: {error}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        error: std::io::Error,
+    },
+}

@@ -1,0 +1,164 @@
+//! Kidnapped robots on a campus: the same robots and the same looks in maps of any number of its buildings.
+
+use super::looks::Looks;
+use super::{Campus, SiteError, draw_start};
+use crate::scenario::Start;
+use edgeloc::database::TopologicalDatabase;
+use edgeloc::geometry::{Angle, Heading, Point2, Scene, Segment2};
+use edgeloc::localize::{
+    Decision, HeadingPrior, Localizer, LocalizerConfig, Look, Motion, ObserveError, StartError,
+};
+use rayon::prelude::*;
+use std::time::{Duration, Instant};
+
+/// A robot put down somewhere in a building, and what it will see.
+#[derive(Debug, Clone)]
+pub struct CampusStart {
+    /// Where the robot is, in the world of the campus \[m\].
+    pub position: Point2,
+    /// The two nodes nearest to it, the nearest first.
+    pub nearest: [u32; 2],
+    looks: Vec<CampusLook>,
+}
+
+#[derive(Debug, Clone)]
+struct CampusLook {
+    compass: Option<HeadingPrior>,
+    segments: Vec<Segment2>,
+}
+
+/// How an attempt ended.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CampusRecord {
+    /// Whether one of the two nearest nodes was answered.
+    pub is_success: bool,
+    /// Whether anything was answered.
+    pub is_answered: bool,
+    /// Distance of the position answered from the true one \[m\].
+    pub position_error_m: Option<f32>,
+    /// Whether one of the two nearest nodes was scored at the first look, and whether at the last.
+    pub is_shortlisted: [bool; 2],
+    /// Wall time of the localiser for each look.
+    pub look_times: Vec<Duration>,
+}
+
+impl Campus {
+    /// Robots anywhere in the free space of the first `buildings`, as many in each, `count` in all; tells `on_building` of
+    /// each building that is done.
+    ///
+    /// # Errors
+    /// When the nodes of a building can't be placed.
+    pub fn starts(
+        &self,
+        buildings: u32,
+        count: u32,
+        on_building: &(dyn Fn() + Sync),
+    ) -> Result<Vec<CampusStart>, SiteError> {
+        let in_building = |building: u32| {
+            let trials = (0..count).filter(|trial| trial % buildings == building).map(|trial| trial / buildings);
+            let starts = self.starts_in(building, trials.collect());
+            on_building();
+            starts
+        };
+        let starts = (0..buildings).into_par_iter().map(in_building).collect::<Result<Vec<_>, _>>()?;
+        Ok(starts.into_iter().flatten().collect())
+    }
+
+    fn starts_in(&self, building: u32, trials: Vec<u32>) -> Result<Vec<CampusStart>, SiteError> {
+        if trials.is_empty() {
+            return Ok(Vec::new());
+        }
+        let (site, scenario, origin) = (self.site(building)?, self.scenario(building), self.origin(building));
+        let first_node = building * self.nodes_per_building();
+        let sources = &scenario.uncertainty;
+        let draw = |trial: u32| {
+            let start = draw_start(&site, &scenario, Start::Anywhere, trial);
+            let mut looks = Looks::new(&site, scenario.seed, trial, 0, start);
+            let turn = Angle::from_degrees(scenario.localizer.turn_deg as f32);
+            let mut heading = start.heading;
+            let mut taken = Vec::new();
+            for look in 0..usize::from(scenario.localizer.max_looks) {
+                let compass = looks.compass_reading(look, heading, sources);
+                taken.push(CampusLook { compass, segments: looks.scene(look, heading, sources).to_vec() });
+                heading = heading.turned(turn).unwrap_or(Heading::default());
+            }
+            CampusStart {
+                position: Point2::new(start.position.x + origin.x, start.position.y + origin.y),
+                nearest: site.two_nearest_nodes(start.position).map(|node| first_node + node),
+                looks: taken,
+            }
+        };
+        Ok(trials.into_iter().map(draw).collect())
+    }
+}
+
+impl CampusStart {
+    /// Lets the robot look around until the localiser decides.
+    ///
+    /// # Errors
+    /// When the localiser refuses to start.
+    pub fn run(
+        &self,
+        map: TopologicalDatabase<'_>,
+        config: &LocalizerConfig,
+        memory: &mut [u64],
+    ) -> Result<CampusRecord, StartError> {
+        let mut localizer = Localizer::new(map, config, memory)?;
+        let mut record = CampusRecord {
+            is_success: false,
+            is_answered: false,
+            position_error_m: None,
+            is_shortlisted: [false; 2],
+            look_times: Vec::new(),
+        };
+        let mut motion = None;
+        for (index, look) in self.looks.iter().enumerate() {
+            let started = Instant::now();
+            let decision = localizer.observe(&look.as_seen(motion));
+            record.look_times.push(started.elapsed());
+            let scores = localizer.candidates().scores();
+            let is_shortlisted = self.nearest.iter().any(|node| scores[*node as usize].is_candidate());
+            record.is_shortlisted = [if index == 0 { is_shortlisted } else { record.is_shortlisted[0] }, is_shortlisted];
+            match decision {
+                Ok(Decision::LookAgain { turn }) => motion = Some(Motion::exact_turn(turn)),
+                Ok(Decision::Localized(answer)) => {
+                    record.is_answered = true;
+                    record.is_success = self.nearest.contains(&answer.node.0);
+                    record.position_error_m = answer.pose.map(|pose| pose.position.distance(self.position));
+                    break;
+                }
+                Ok(Decision::Unknown { .. }) | Err(_) => break,
+            }
+        }
+        Ok(record)
+    }
+
+    /// Whether the shortlist of the first look holds the node that scores best when every node is scored.
+    ///
+    /// # Errors
+    /// When a localiser refuses.
+    pub fn keeps_the_best(
+        &self,
+        map: TopologicalDatabase<'_>,
+        config: &LocalizerConfig,
+    ) -> Result<Option<bool>, StartError> {
+        let first_look = |map: TopologicalDatabase<'_>, memory: &mut Vec<u64>| -> Result<_, StartError> {
+            memory.resize(Localizer::memory_len_in(config, &map), 0);
+            let mut localizer = Localizer::new(map, config, memory)?;
+            let done: Result<Decision, ObserveError> =
+                self.looks.first().map_or(Err(ObserveError::HeadingMissing), |look| localizer.observe(&look.as_seen(None)));
+            let leader = localizer.candidates().leading_node().filter(|(_, score)| score.sum_q30 > 0);
+            let scored = localizer.candidates().candidates().map(|(node, _)| node).collect::<Vec<_>>();
+            Ok(done.ok().and(leader).map(|(node, _)| (node, scored)))
+        };
+        let mut memory = Vec::new();
+        let Some((best, _)) = first_look(map.without_index(), &mut memory)? else { return Ok(None) };
+        Ok(first_look(map, &mut memory)?.map(|(_, scored)| scored.contains(&best)))
+    }
+}
+
+impl CampusLook {
+    fn as_seen(&self, motion: Option<Motion>) -> Look<'_> {
+        Look { heading: self.compass, motion_since_last: motion, scene: Scene::new(&self.segments) }
+    }
+}
