@@ -1,7 +1,7 @@
 //! A campus: many generated offices, each of a seed of its own, on a lattice far enough apart that none sees another.
 
 use super::{Site, SiteError};
-use crate::learning::CalibratedRig;
+use crate::learning::{self, CalibratedRig, JoinError, MapPart};
 use crate::scenario::{Building, Scenario, ScenarioError};
 use crate::whole_file;
 use crate::world::WireframeWorld;
@@ -9,6 +9,7 @@ use crate::world::office::{self, OfficeOptions};
 use edgeloc::database::WriteError;
 use edgeloc::geometry::Point2;
 use rayon::prelude::*;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -94,6 +95,36 @@ impl Campus {
     }
 }
 
+impl Campus {
+    /// Makes one map of the first `count` buildings, learned before into `folder`, with an index; tells `on_views` of how many
+    /// views are done.
+    ///
+    /// # Errors
+    /// When a building's map is missing or the whole can't be written.
+    pub fn map(
+        &self,
+        folder: &Path,
+        count: u32,
+        output: &Path,
+        on_views: &(dyn Fn(usize) + Sync),
+    ) -> Result<(), CampusError> {
+        let part = |building| MapPart { path: self.map_path(folder, building), origin: self.origin(building) };
+        let parts: Vec<MapPart> = (0..count).map(part).collect();
+        let plain = output.with_extension("plain");
+        learning::join_maps(&parts, &plain, &|| ())?;
+        let indexed = learning::index_map(&plain, output, on_views);
+        // The error that is reported is the one that mattered.
+        let _ = fs::remove_file(&plain);
+        Ok(indexed?)
+    }
+
+    /// What [`Self::map`] counts to.
+    #[must_use]
+    pub fn index_steps(&self, count: u32) -> usize {
+        (count * self.nodes_per_building()) as usize * usize::from(learning::index_shape().sectors)
+    }
+}
+
 fn office_of(seed: u64) -> WireframeWorld {
     office::generate(&OfficeOptions { seed, ..OfficeOptions::default() })
 }
@@ -110,6 +141,9 @@ pub enum CampusError {
     /// What was learned does not fit the format.
     #[error("the learned map can't be written: {0}")]
     Write(#[from] WriteError),
+    /// The buildings' maps can't be made one.
+    #[error(transparent)]
+    Join(#[from] JoinError),
     /// A file can't be read or written.
     #[error("{}: {error}", path.display())]
     File {

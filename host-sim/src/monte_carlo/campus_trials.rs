@@ -5,6 +5,7 @@ use super::{Campus, SiteError, draw_start};
 use crate::scenario::Start;
 use edgeloc::database::TopologicalDatabase;
 use edgeloc::geometry::{Angle, Heading, Point2, Scene, Segment2};
+use edgeloc::gist::{Projection, add_similarities, edge_layout};
 use edgeloc::localize::{
     Decision, HeadingPrior, Localizer, LocalizerConfig, Look, Motion, ObserveError, StartError,
 };
@@ -131,6 +132,23 @@ impl CampusStart {
             }
         }
         Ok(record)
+    }
+
+    /// Time of the first stage for the first look, without the choice; `None` in a map without an index.
+    #[must_use]
+    pub fn first_stage_time(&self, map: &TopologicalDatabase<'_>) -> Option<Duration> {
+        let (index, look) = map.index().zip(self.looks.first())?;
+        let mut sums = vec![0; map.node_count() * usize::from(index.shape().poses)];
+        let sectors = f32::from(index.shape().sectors);
+        let turns = look.compass.map_or(0.0, |compass| compass.mean.angle().radians() / core::f32::consts::TAU);
+        let sector = index.sector((turns.rem_euclid(1.0) * sectors + 0.5) as u16 % index.shape().sectors);
+        let started = Instant::now();
+        let projection = Projection { mean: index.mean(), axes: index.axes() };
+        let code = projection.code(&edge_layout(&map.rig().camera, look.segments.iter().copied()));
+        add_similarities(&code, &[sector], &mut sums);
+        let taken = started.elapsed();
+        std::hint::black_box(&sums);
+        Some(taken)
     }
 
     /// Whether the shortlist of the first look holds the node that scores best when every node is scored.
