@@ -55,7 +55,7 @@
 //!
 //! ```text
 //! 0x00 65 64 67 65 6d 61 70 0a | magic
-//! 0x08 03 00 0c 00 00 00 00 00 | version 3; 12 views; checksum 0x00000000
+//! 0x08 03 00 0c 00 91 23 9f b2 | version 3; 12 views; checksum 0xb29f2391
 //! 0x10 64 00 00 00 01 00 00 00 | 100 bytes; 1 node
 //! 0x18 01 00 00 00 80 02 e0 01 | 1 segment; 640 x 480 px
 //! 0x20 66 26 fb 43 00 00 a0 43 | focal length 502.3 px; principal point x 320 px,

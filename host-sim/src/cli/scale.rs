@@ -140,7 +140,7 @@ pub(super) fn make_map(campus: &Campus, buildings: u32, folder: &Path, path: &Pa
     drop(bar);
     let steps = campus.index_steps(buildings);
     let bar = progress::bar(steps, "views indexed");
-    campus.map(folder, buildings, path, &|views| (0..views).for_each(|_| bar.step())).into_diagnostic()
+    campus.map(folder, buildings, path, &|views| bar.steps(views)).into_diagnostic()
 }
 
 fn table(lines: &[ScaleLine]) -> String {

@@ -95,7 +95,8 @@ impl Site {
         Ok(())
     }
 
-    /// Learns the map, with the `map_index`-th draw of the uncertainty sources: the bytes of a topological database.
+    /// Learns the map, with the `map_index`-th draw of the uncertainty sources: the bytes of a topological database, with an
+    /// index if it has more nodes than the localiser's shortlist.
     ///
     /// # Errors
     /// When what was learned does not fit the database format.
@@ -117,6 +118,9 @@ impl Site {
             if let Some(agreement) = agreement {
                 database::state_self_agreement(&mut bytes, agreement).expect("a share, of a map just written");
             }
+        }
+        if self.nodes.len() > usize::from(scenario.localizer.shortlist) {
+            bytes = learning::indexed(&bytes).map_err(|_| WriteError::TooLarge)?;
         }
         Ok(bytes)
     }
