@@ -43,7 +43,7 @@ impl LocalizerConfig {
             min_length_px: 12.0,
             horizontal_exclusion: Angle::from_degrees(5.0),
             max_segments: 150,
-            shortlist: 500,
+            shortlist: 300,
             verification: None,
         }
     }

@@ -99,3 +99,60 @@ impl<'m> FirstStage<'m> {
         ((floor ^ 0x8000).cast_signed(), left)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::database::{self, IndexShape, NodeModel, TopologicalDatabase};
+    use crate::geometry::{Point2, StereoRig};
+    use proptest::prelude::*;
+    use std::vec;
+    use std::vec::Vec;
+
+    /// A map of so many empty nodes with an index of two sectors and two poses.
+    fn map(nodes: usize) -> Vec<u8> {
+        let nodes = vec![NodeModel { position: Point2::default(), segments: &[] }; nodes];
+        let mut bytes = vec![0; database::encoded_len(&nodes).expect("small")];
+        database::write(&StereoRig::reference(), 12, &nodes, &mut bytes).expect("legal");
+        let shape = IndexShape { sectors: 2, poses: 2 };
+        let length = database::indexed_len(&TopologicalDatabase::open(&bytes).expect("a map"), shape).expect("small");
+        bytes.resize(length, 0);
+        database::begin_index(&mut bytes, shape).expect("room enough");
+        database::seal(&mut bytes).expect("whole");
+        bytes
+    }
+
+    proptest! {
+        #[test]
+        fn the_best_are_those_that_sorting_finds(
+            sums in prop::collection::vec((-40_i16..40, prop_oneof![Just(i16::MIN), Just(i16::MAX), -300_i16..300]), 1..60),
+            count in 1_usize..70,
+        ) {
+            let bytes = map(sums.len());
+            let map = TopologicalDatabase::open(&bytes).expect("sealed");
+            let mut memory = vec![0; 2 * sums.len()];
+            let index = map.index().expect("an index");
+            let stage = FirstStage::new(*index, map.rig().camera, &mut memory);
+            for (places, (a, b)) in stage.sums.chunks_exact_mut(2).zip(&sums) {
+                places.copy_from_slice(&[*a, *b]);
+            }
+            let mut order: Vec<u32> = (0..sums.len() as u32).collect();
+            let of = |node: &u32| { let (a, b) = sums[*node as usize]; a.max(b) };
+            order.sort_by_key(|node| core::cmp::Reverse(of(node)));
+            order.truncate(count);
+            order.sort_unstable();
+            let best: Vec<u32> = stage.best(count).map(|node| node.0).collect();
+            prop_assert_eq!(best, order);
+        }
+    }
+
+    #[test]
+    fn a_heading_belongs_to_the_sector_about_it() {
+        let bytes = map(1);
+        let map = TopologicalDatabase::open(&bytes).expect("sealed");
+        let mut memory = [0; 2];
+        let stage = FirstStage::new(*map.index().expect("an index"), map.rig().camera, &mut memory);
+        let sectors = [0.0, 1.5, 1.6, 3.2, 4.7, 4.8, 6.2, -0.1, -3.0, 40.0].map(|heading| stage.sector_of(heading));
+        assert_eq!(sectors, [0, 0, 1, 1, 1, 0, 0, 0, 1, 1]);
+    }
+}

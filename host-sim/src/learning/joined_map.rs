@@ -164,3 +164,80 @@ pub enum JoinError {
     #[error(transparent)]
     Index(#[from] IndexError),
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::learning::{CalibratedRig, LearnedNode, write_map};
+    use edgeloc::database::NodeId;
+    use edgeloc::geometry::{Point3, Polarity, Segment3, StereoRig};
+
+    /// Writes a map of nodes with one to `count` posts around them.
+    fn write(folder: &Path, name: &str, count: u16, rig: StereoRig) -> PathBuf {
+        let post = |index: u16| {
+            let (sin, cos) = edgeloc::math::sin_cos(f32::from(index) * 1.3);
+            let point = |height| Point3::new(3.0 * cos, 3.0 * sin, height);
+            Segment3 { start: point(-0.7), end: point(0.9), polarity: Polarity::LeftBrighter }
+        };
+        let node = |index: u16| LearnedNode {
+            position: Point2::new(f32::from(index), 0.5),
+            segments: (0..=index).map(post).collect(),
+        };
+        let nodes = (0..count).map(node).collect::<Vec<_>>();
+        let path = folder.join(name);
+        fs::write(&path, write_map(&CalibratedRig::exact(rig), 12, &nodes).expect("legal")).expect("written");
+        path
+    }
+
+    fn names(folder: &Path) -> Vec<String> {
+        let entries = fs::read_dir(folder).expect("a folder");
+        let mut names: Vec<String> =
+            entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn maps_are_joined_moved_and_indexed_and_nothing_else_is_left() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let rig = StereoRig::reference();
+        let parts = [("a", 3, 0.0), ("b", 2, 40.0)].map(|(name, count, x)| MapPart {
+            path: write(folder.path(), name, count, rig),
+            origin: Point2::new(x, -x),
+        });
+        let (joined, with_index) = (folder.path().join("joined"), folder.path().join("with-index"));
+        join_maps(&parts, &joined, &|| ()).expect("two maps of one rig");
+        index_map(&joined, &with_index, &|_| ()).expect("a map");
+        for path in [&joined, &with_index] {
+            let file = MapFile::open(path).expect("a file");
+            let map = TopologicalDatabase::open(&file).expect("sealed");
+            let counts = map.nodes().map(|node| node.segments().len()).collect::<Vec<_>>();
+            assert_eq!(counts, [1, 2, 3, 1, 2]);
+            let last = map.node(NodeId(4)).expect("five nodes");
+            assert!(last.position().distance(Point2::new(41.0, -39.5)) < 1e-3);
+            assert!(last.segments().eq(map.node(NodeId(1)).expect("five nodes").segments()));
+            assert_eq!(map.index().map(|index| index.shape()), (path == &with_index).then(index_shape));
+        }
+        assert_eq!(names(folder.path()), ["a", "b", "joined", "with-index"]);
+        let bytes = fs::read(&with_index).expect("a file");
+        assert!(indexed(&bytes).expect("a map") == bytes, "an index made anew is the same");
+    }
+
+    #[test]
+    fn what_is_no_map_or_of_another_rig_is_refused_and_nothing_is_left() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let rig = StereoRig::reference();
+        let other = StereoRig { baseline_m: 0.2, ..rig };
+        let part = |path: PathBuf| MapPart { path, origin: Point2::default() };
+        let (good, unlike) = (write(folder.path(), "a", 2, rig), write(folder.path(), "b", 2, other));
+        let output = folder.path().join("out");
+        let join = |parts: &[MapPart]| join_maps(parts, &output, &|| ());
+        assert!(matches!(join(&[]), Err(JoinError::Nothing)));
+        assert!(matches!(join(&[part(good.clone()), part(unlike)]), Err(JoinError::Unlike { .. })));
+        assert!(matches!(join(&[part(folder.path().join("none"))]), Err(JoinError::File { .. })));
+        fs::write(folder.path().join("c"), b"no map").expect("written");
+        assert!(matches!(index_map(&folder.path().join("c"), &output, &|_| ()), Err(JoinError::Open { .. })));
+        assert!(index_map(&good, &folder.path().join("none").join("out"), &|_| ()).is_err());
+        assert_eq!(names(folder.path()), ["a", "b", "c"]);
+    }
+}

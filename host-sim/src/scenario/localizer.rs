@@ -42,7 +42,7 @@ impl Default for LocalizerSettings {
             min_length_px: 12.0,
             horizontal_exclusion_deg: 5.0,
             max_segments: 150,
-            shortlist: 500,
+            shortlist: 300,
             pgh: PghSettings::default(),
             verification: VerificationSettings::default(),
         }

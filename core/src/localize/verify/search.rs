@@ -136,9 +136,11 @@ impl<'m> Search<'m> {
         // Nodes that were just chosen catch up with the looks before.
         let first = if changed || self.slots.are_chosen() { 0 } else { last };
         for look in first..=last {
-            self.check_grid(look, database, checker, looks);
             if changed || look == last {
+                self.check_grid(look, database, checker, looks);
                 self.refute(looks);
+            } else if self.slots.lack(look) {
+                self.check_grid(look, database, checker, looks);
             }
         }
         self.slots.cover(last);

@@ -48,6 +48,11 @@ impl<'m> Slots<'m> {
         }
     }
 
+    /// Whether the evidence of any lacks the look.
+    pub(super) fn lack(&self, look: usize) -> bool {
+        self.slots.iter().any(|slot| *slot != Slot::EMPTY && slot.looks as usize <= look)
+    }
+
     /// Takes down that the evidence of all is of all looks up to this one.
     pub(super) fn cover(&mut self, look: usize) {
         self.slots.iter_mut().for_each(|slot| slot.looks = look as u32 + 1);
