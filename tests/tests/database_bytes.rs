@@ -1,8 +1,8 @@
 //! The byte format of the database against truncation, damage and hostile hands.
 
 use edgeloc::database::{
-    IndexError, IndexShape, NodeId, NodeModel, OpenError, TopologicalDatabase, WriteError, begin_index, encoded_len, format,
-    indexed_len, seal, write,
+    IndexError, IndexShape, NodeId, NodeModel, OpenError, TopologicalDatabase, WriteError, begin_index, encoded_len,
+    format, indexed_len, seal, write,
 };
 use edgeloc::geometry::{Angle, Heading, Point2, Point3, Polarity, Scene, Segment2, Segment3, StereoRig};
 use edgeloc::localize::{HeadingPrior, Localizer, LocalizerConfig, Look};
@@ -224,7 +224,8 @@ fn a_damaged_index_is_refused() {
         let mut absurd = bytes.clone();
         absurd[68..70].copy_from_slice(&sectors.to_le_bytes());
         absurd[70..72].copy_from_slice(&poses.to_le_bytes());
-        let opened = TopologicalDatabase::open(&with_checksum(absurd)).map(|map| map.index().map(|index| index.shape()));
+        let opened =
+            TopologicalDatabase::open(&with_checksum(absurd)).map(|map| map.index().map(|index| index.shape()));
         let is_refused = matches!(opened, Err(OpenError::Counts | OpenError::Index | OpenError::Truncated { .. }));
         // The same number of codes, otherwise told apart, is a legal index.
         assert!(is_refused || sectors * poses == 6, "{sectors} x {poses}: {opened:?}");

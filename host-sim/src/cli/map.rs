@@ -238,7 +238,9 @@ impl MapDescription {
                 "index",
                 match self.index_sectors {
                     0 => "none: every node is scored".to_owned(),
-                    sectors => format!("views along {sectors} headings from {} poses about each node", self.index_poses),
+                    sectors => {
+                        format!("views along {sectors} headings from {} poses about each node", self.index_poses)
+                    }
                 },
             ),
             ("checksum", "right".to_owned()),

@@ -76,7 +76,7 @@ pub fn index_map(input: &Path, output: &Path, on_views: &(dyn Fn(usize) + Sync))
     let projection = LearnedProjection::learn(&map);
     finished(output, length.max(old), |bytes| {
         bytes[..old].copy_from_slice(&file[..old]);
-        fill_index(&map, &projection, database::begin_index(bytes, index_shape())?, on_views);
+        fill_index(&map, &projection, &mut database::begin_index(bytes, index_shape())?, on_views);
         Ok(())
     })
 }
@@ -92,7 +92,7 @@ pub fn indexed(bytes: &[u8]) -> Result<Vec<u8>, IndexError> {
     let mut out = vec![0; length.max(old)];
     out[..old].copy_from_slice(&bytes[..old]);
     let projection = LearnedProjection::learn(&map);
-    fill_index(&map, &projection, database::begin_index(&mut out, index_shape())?, &|_| ());
+    fill_index(&map, &projection, &mut database::begin_index(&mut out, index_shape())?, &|_| ());
     let length = database::seal(&mut out)?;
     out.truncate(length);
     Ok(out)

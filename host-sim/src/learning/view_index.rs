@@ -53,8 +53,11 @@ impl LearnedProjection {
         let mut stream = Stream::new(0, "index", map.node_count() as u64, 0);
         const RUN: usize = 72;
         let runs = (0..map.node_count()).step_by(RUN * step).map(|first| first + RUN * stream.index(step));
-        let sample: Vec<NodeId> =
-            runs.flat_map(|first| first..first + RUN).filter(|node| *node < map.node_count()).map(|node| NodeId(node as u32)).collect();
+        let sample: Vec<NodeId> = runs
+            .flat_map(|first| first..first + RUN)
+            .filter(|node| *node < map.node_count())
+            .map(|node| NodeId(node as u32))
+            .collect();
         let pairs = neighbors(map, &sample);
         let sum_up = |sector: u16| Moments::of_sector(map, &sample, &pairs, sector);
         let moments = (0..SECTORS).into_par_iter().map(sum_up).collect::<Vec<_>>();
@@ -76,7 +79,7 @@ impl LearnedProjection {
 pub fn fill_index(
     map: &TopologicalDatabase<'_>,
     projection: &LearnedProjection,
-    parts: IndexParts<'_>,
+    parts: &mut IndexParts<'_>,
     on_nodes: &(dyn Fn(usize) + Sync),
 ) {
     const AT_ONCE: usize = 64;
@@ -117,11 +120,8 @@ fn view<'a>(
         Point3::new(east * sin - north * cos, -point.z, east * cos + north * sin)
     };
     node.segments().filter_map(move |segment| {
-        let segment = Segment3 {
-            start: in_camera(segment.start),
-            end: in_camera(segment.end),
-            polarity: segment.polarity,
-        };
+        let segment =
+            Segment3 { start: in_camera(segment.start), end: in_camera(segment.end), polarity: segment.polarity };
         let is_behind = segment.start.z < near_limit_m && segment.end.z < near_limit_m;
         if is_behind { None } else { camera.project_segment(&segment, near_limit_m) }
     })
@@ -141,9 +141,8 @@ fn neighbors(map: &TopologicalDatabase<'_>, sample: &[NodeId]) -> Vec<Pair> {
             if here.distance(*there) > NEIGHBOR_M {
                 continue;
             }
-            let is_close = |[x, y]: &[f32; 2]| {
-                PAIR_APART_M.contains(&here.distance(Point2::new(there.x + x, there.y + y)))
-            };
+            let is_close =
+                |[x, y]: &[f32; 2]| PAIR_APART_M.contains(&here.distance(Point2::new(there.x + x, there.y + y)));
             pairs.extend((0..).zip(&POSES_M).filter(|(_, pose)| is_close(pose)).map(|(pose, _)| (*id, (*other, pose))));
         }
     }
@@ -227,7 +226,8 @@ impl Moments {
 
 /// The sum of the outer squares of rows.
 fn squares(rows: &[Vec<f32>]) -> DMatrix<f64> {
-    let rows = DMatrix::from_fn(FEATURES, rows.len(), |row, column| rows[column].get(row).map_or(0.0, |x| f64::from(*x)));
+    let rows =
+        DMatrix::from_fn(FEATURES, rows.len(), |row, column| rows[column].get(row).map_or(0.0, |x| f64::from(*x)));
     &rows * rows.transpose()
 }
 

@@ -83,7 +83,7 @@ impl Campus {
     /// # Errors
     /// When a building can't be learned or a file not be written; those done are kept.
     pub fn learn(&self, folder: &Path, count: u32, on_building: &(dyn Fn() + Sync)) -> Result<(), CampusError> {
-        (0..count).into_par_iter().try_for_each(|building| {
+        let learn_one = |building: u32| {
             let path = self.map_path(folder, building);
             if !path.exists() {
                 let bytes = self.site(building)?.learn_map(&self.scenario(building), 0)?;
@@ -91,7 +91,12 @@ impl Campus {
             }
             on_building();
             Ok(())
-        })
+        };
+        // In their order, so that what is learned before a break is the whole of a smaller campus.
+        let at_once = 8 * rayon::current_num_threads() as u32;
+        (0..count)
+            .step_by(at_once as usize)
+            .try_for_each(|first| (first..count.min(first + at_once)).into_par_iter().try_for_each(learn_one))
     }
 }
 

@@ -4,11 +4,9 @@ use super::looks::Looks;
 use super::{Campus, SiteError, draw_start};
 use crate::scenario::Start;
 use edgeloc::database::TopologicalDatabase;
-use edgeloc::geometry::{Angle, Heading, Point2, Scene, Segment2};
+use edgeloc::geometry::{Angle, Point2, Scene, Segment2};
 use edgeloc::gist::{Projection, add_similarities, edge_layout};
-use edgeloc::localize::{
-    Decision, HeadingPrior, Localizer, LocalizerConfig, Look, Motion, ObserveError, StartError,
-};
+use edgeloc::localize::{Decision, HeadingPrior, Localizer, LocalizerConfig, Look, Motion, ObserveError, StartError};
 use rayon::prelude::*;
 use std::time::Duration;
 
@@ -81,7 +79,7 @@ impl Campus {
             for look in 0..usize::from(scenario.localizer.max_looks) {
                 let compass = looks.compass_reading(look, heading, sources);
                 taken.push(CampusLook { compass, segments: looks.scene(look, heading, sources).to_vec() });
-                heading = heading.turned(turn).unwrap_or(Heading::default());
+                heading = heading.turned(turn).unwrap_or_default();
             }
             CampusStart {
                 position: Point2::new(start.position.x + origin.x, start.position.y + origin.y),
@@ -119,7 +117,8 @@ impl CampusStart {
             record.look_times.push(processor_time().saturating_sub(started));
             let scores = localizer.candidates().scores();
             let is_shortlisted = self.nearest.iter().any(|node| scores[*node as usize].is_candidate());
-            record.is_shortlisted = [if index == 0 { is_shortlisted } else { record.is_shortlisted[0] }, is_shortlisted];
+            record.is_shortlisted =
+                [if index == 0 { is_shortlisted } else { record.is_shortlisted[0] }, is_shortlisted];
             match decision {
                 Ok(Decision::LookAgain { turn }) => motion = Some(Motion::exact_turn(turn)),
                 Ok(Decision::Localized(answer)) => {
@@ -163,8 +162,10 @@ impl CampusStart {
         let first_look = |map: TopologicalDatabase<'_>, memory: &mut Vec<u64>| -> Result<_, StartError> {
             memory.resize(Localizer::memory_len_in(config, &map), 0);
             let mut localizer = Localizer::new(map, config, memory)?;
-            let done: Result<Decision, ObserveError> =
-                self.looks.first().map_or(Err(ObserveError::HeadingMissing), |look| localizer.observe(&look.as_seen(None)));
+            let done: Result<Decision, ObserveError> = self
+                .looks
+                .first()
+                .map_or(Err(ObserveError::HeadingMissing), |look| localizer.observe(&look.as_seen(None)));
             let leader = localizer.candidates().leading_node().filter(|(_, score)| score.sum_q30 > 0);
             let scored = localizer.candidates().candidates().map(|(node, _)| node).collect::<Vec<_>>();
             Ok(done.ok().and(leader).map(|(node, _)| (node, scored)))

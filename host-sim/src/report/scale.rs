@@ -166,7 +166,9 @@ pub fn scale_chart(lines: &[ScaleLine]) -> SVG {
     let most = libm::ceil(lines.iter().map(|line| decade(line.nodes)).fold(least + 1.0, f64::max) - 0.01);
     let x = |nodes: u64| rates.x((decade(nodes) - least) / (most - least));
     let lows = lines.iter().flat_map(|line| {
-        [line.success().success_interval().0].into_iter().chain(line.shortlisted().map(|rate| rate.success_interval().0))
+        [line.success().success_interval().0]
+            .into_iter()
+            .chain(line.shortlisted().map(|rate| rate.success_interval().0))
     });
     let floor = (libm::floor(10.0 * lows.fold(0.9, f64::min)) / 10.0).max(0.0);
     let height = move |rate: f64| (rate - floor) / (1.0 - floor);
@@ -185,7 +187,7 @@ pub fn scale_chart(lines: &[ScaleLine]) -> SVG {
         chart.append(text("middle", (at, times.y(0.0) + 20.0), grouped(10_u64.pow(power.unsigned_abs()))));
     }
     chart.append(text("middle", (times.x(0.5), times.y(0.0) + 44.0), "nodes of the map"));
-    let rate_series: [(&str, fn(&ScaleLine) -> SuccessRate); 3] = [
+    let rate_series: [Series<SuccessRate>; 3] = [
         ("success", ScaleLine::success),
         ("truth on the shortlist at the last look", |line| line.shortlisted()[1]),
         ("at the first look", |line| line.shortlisted()[0]),
@@ -195,11 +197,16 @@ pub fn scale_chart(lines: &[ScaleLine]) -> SVG {
             let rate = rate_of(line);
             let (low, high) = rate.success_interval();
             let words = format!("{name}, {} nodes: {rate}", line.nodes);
-            Some((x(line.nodes), rates.y(height(rate.rate()?)), Some((rates.y(height(low)), rates.y(height(high)))), words))
+            Some((
+                x(line.nodes),
+                rates.y(height(rate.rate()?)),
+                Some((rates.y(height(low)), rates.y(height(high)))),
+                words,
+            ))
         });
         chart.append(trace(series, name, (rates.x(0.02 + 0.28 * series as f64), 18.0), marks.collect()));
     }
-    let time_series: [(&str, fn(&ScaleLine) -> f64); 3] = [
+    let time_series: [Series<f64>; 3] = [
         ("first look, median", |line| line.first_look_ms_median),
         ("later looks", |line| line.later_look_ms_median),
         ("first stage", |line| line.first_stage_ms_median),
@@ -213,6 +220,9 @@ pub fn scale_chart(lines: &[ScaleLine]) -> SVG {
     }
     chart
 }
+
+/// A name, and what it is of a line.
+type Series<T> = (&'static str, fn(&ScaleLine) -> T);
 
 /// A mark: where it is, where its interval lies, and its tooltip.
 type Mark = (f64, f64, Option<(f64, f64)>, String);

@@ -54,8 +54,7 @@ pub fn code(layout: &[i16], mean: &[i16], axes: &[Vec<i16>]) -> Vec<f64> {
     let along: Vec<f64> = axes
         .iter()
         .map(|axis| {
-            let products =
-                axis.iter().zip(layout.iter().zip(mean)).map(|(a, (x, m))| f64::from(*a) * f64::from(x - m));
+            let products = axis.iter().zip(layout.iter().zip(mean)).map(|(a, (x, m))| f64::from(*a) * f64::from(x - m));
             products.sum()
         })
         .collect();

@@ -30,10 +30,7 @@ const HOST_SIM: &[Arrow] = &[
     ("uncertainty", &["random", "camera"]),
     ("learning", &["random", "map_file", "world", "camera", "uncertainty"]),
     ("scenario", &["random", "world", "camera", "uncertainty", "learning"]),
-    (
-        "monte_carlo",
-        &["random", "whole_file", "map_file", "world", "camera", "uncertainty", "learning", "scenario"],
-    ),
+    ("monte_carlo", &["random", "whole_file", "map_file", "world", "camera", "uncertainty", "learning", "scenario"]),
     ("sweep", &["random", "scenario", "monte_carlo"]),
     (
         "report",
