@@ -53,7 +53,7 @@ pub(super) struct Scale {
 
 /// The fields of a line, for the help.
 const JSON_FIELDS: &str = "nodes, scored_nodes, trials, successes, success_rate_low, success_rate_high, wrong_answers, \
-shortlisted_at_first, shortlisted_at_last, exact_trials, exact_best_shortlisted, mean_looks, first_look_ms_min, \
+shortlisted_at_first, shortlisted_at_last, exact_trials, exact_right, exact_right_shortlisted, mean_looks, first_look_ms_min, \
 first_look_ms_median, later_look_ms_median, first_stage_ms_min, first_stage_ms_median, position_error_m_median, map_bytes, \
 memory_bytes, open_ms";
 
@@ -108,7 +108,7 @@ impl Scale {
         let asked = if is_asked { starts } else { &[] };
         let bar = progress::bar(asked.len(), "exact scans");
         let keeps = |start: &CampusStart| {
-            let kept = start.keeps_the_best(map, &config);
+            let kept = start.scan_exactly(map, &config);
             bar.step();
             kept
         };
@@ -154,11 +154,11 @@ fn table(lines: &[ScaleLine]) -> String {
         "later looks",
         "first stage",
         "truth shortlisted, first / last look",
-        "exact best shortlisted",
+        "exact scan right / of these shortlisted",
         "map, memory",
     ]);
     for line in lines {
-        let [first, last] = line.shortlisted();
+        let ([first, last], [exact, kept]) = (line.shortlisted(), line.exact());
         table.add_row([
             line.nodes.to_string(),
             line.scored_nodes.to_string(),
@@ -169,7 +169,7 @@ fn table(lines: &[ScaleLine]) -> String {
             format!("{:.1} ms", line.later_look_ms_median),
             format!("{:.2} / {:.2} ms", line.first_stage_ms_min, line.first_stage_ms_median),
             format!("{first} / {last}"),
-            line.exact().to_string(),
+            format!("{exact} / {kept}"),
             format!("{:.1} MB, {:.2} MB", line.map_bytes as f64 / 1e6, line.memory_bytes as f64 / 1e6),
         ]);
     }

@@ -3,7 +3,7 @@
 use super::looks::Looks;
 use super::{Campus, SiteError, draw_start};
 use crate::scenario::Start;
-use edgeloc::database::TopologicalDatabase;
+use edgeloc::database::{NodeId, TopologicalDatabase};
 use edgeloc::geometry::{Angle, Point2, Scene, Segment2};
 use edgeloc::gist::{Projection, add_similarities, edge_layout};
 use edgeloc::localize::{Decision, HeadingPrior, Localizer, LocalizerConfig, Look, Motion, ObserveError, StartError};
@@ -39,6 +39,15 @@ pub struct CampusRecord {
     pub is_shortlisted: [bool; 2],
     /// Time of the localiser on the processor for each look.
     pub look_times: Vec<Duration>,
+}
+
+/// What scoring every node at the first look finds best.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ExactScan {
+    /// Whether it is one of the two nearest nodes.
+    pub is_right: bool,
+    /// Whether it is on the shortlist.
+    pub is_shortlisted: bool,
 }
 
 impl Campus {
@@ -150,15 +159,15 @@ impl CampusStart {
         Some(taken)
     }
 
-    /// Whether the shortlist of the first look holds the node that scores best when every node is scored.
+    /// Scores every node at the first look and compares the best with the shortlist; `None` when no node scores.
     ///
     /// # Errors
     /// When a localiser refuses.
-    pub fn keeps_the_best(
+    pub fn scan_exactly(
         &self,
         map: TopologicalDatabase<'_>,
         config: &LocalizerConfig,
-    ) -> Result<Option<bool>, StartError> {
+    ) -> Result<Option<ExactScan>, StartError> {
         let first_look = |map: TopologicalDatabase<'_>, memory: &mut Vec<u64>| -> Result<_, StartError> {
             memory.resize(Localizer::memory_len_in(config, &map), 0);
             let mut localizer = Localizer::new(map, config, memory)?;
@@ -172,7 +181,9 @@ impl CampusStart {
         };
         let mut memory = Vec::new();
         let Some((best, _)) = first_look(map.without_index(), &mut memory)? else { return Ok(None) };
-        Ok(first_look(map, &mut memory)?.map(|(_, scored)| scored.contains(&best)))
+        let is_right = self.nearest.contains(&best.0);
+        let scan = |scored: Vec<NodeId>| ExactScan { is_right, is_shortlisted: scored.contains(&best) };
+        Ok(first_look(map, &mut memory)?.map(|(_, scored)| scan(scored)))
     }
 }
 

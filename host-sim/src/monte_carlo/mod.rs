@@ -15,7 +15,7 @@ mod statistics;
 mod trial;
 
 pub use campus::{Campus, CampusError};
-pub use campus_trials::{CampusRecord, CampusStart};
+pub use campus_trials::{CampusRecord, CampusStart, ExactScan};
 pub use look_images::{LookImages, SourceEffect};
 pub use record::{Outcome, TrialRecord, UnknownKind};
 pub use replay::{Replay, replay};

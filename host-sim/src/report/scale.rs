@@ -3,7 +3,7 @@
 use super::axes::{Axes, round_steps};
 use super::drawing::{drawing, line, text, tooltip};
 use super::figure_chart::rate_steps;
-use crate::monte_carlo::{CampusRecord, SuccessRate};
+use crate::monte_carlo::{CampusRecord, ExactScan, SuccessRate};
 use serde::Serialize;
 use std::time::Duration;
 use svg::Node;
@@ -32,8 +32,10 @@ pub struct ScaleLine {
     pub shortlisted_at_last: u64,
     /// Robots for whom every node was scored at the first look, if that was asked for.
     pub exact_trials: u64,
-    /// Of these, robots for whom the node that then scored best was on the shortlist.
-    pub exact_best_shortlisted: u64,
+    /// Of these, robots for whom one of the two nearest nodes then scored best.
+    pub exact_right: u64,
+    /// And of these, robots for whom that node was on the shortlist.
+    pub exact_right_shortlisted: u64,
     /// Mean number of looks.
     pub mean_looks: f64,
     /// Least time of the localiser for the first look, on one thread.
@@ -71,8 +73,8 @@ pub struct ScaleFacts {
     pub open: Duration,
     /// Time of the first stage, for each robot's first look.
     pub first_stage: Vec<Duration>,
-    /// Whether the shortlist held the node that scores best when all are scored, for each robot that was asked.
-    pub exact: Vec<bool>,
+    /// What scoring every node at the first look found, for each robot that was asked and saw enough.
+    pub exact: Vec<ExactScan>,
 }
 
 impl ScaleLine {
@@ -99,7 +101,9 @@ impl ScaleLine {
             shortlisted_at_first: count(&|record| record.is_shortlisted[0]),
             shortlisted_at_last: count(&|record| record.is_shortlisted[1]),
             exact_trials: facts.exact.len() as u64,
-            exact_best_shortlisted: facts.exact.iter().filter(|is_kept| **is_kept).count() as u64,
+            exact_right: facts.exact.iter().filter(|scan| scan.is_right).count() as u64,
+            exact_right_shortlisted: facts.exact.iter().filter(|scan| scan.is_right && scan.is_shortlisted).count()
+                as u64,
             mean_looks: looks as f64 / records.len().max(1) as f64,
             first_look_ms_min: first.first().copied().unwrap_or(0.0),
             first_look_ms_median: median(&first),
@@ -126,10 +130,13 @@ impl ScaleLine {
         [of(self.shortlisted_at_first), of(self.shortlisted_at_last)]
     }
 
-    /// Robots with the best node of an exact scan on the shortlist of the first look.
+    /// How often an exact scan of the first look is right, and how often the shortlist holds what it is right about.
     #[must_use]
-    pub const fn exact(&self) -> SuccessRate {
-        SuccessRate { successes: self.exact_best_shortlisted, trials: self.exact_trials }
+    pub const fn exact(&self) -> [SuccessRate; 2] {
+        [
+            SuccessRate { successes: self.exact_right, trials: self.exact_trials },
+            SuccessRate { successes: self.exact_right_shortlisted, trials: self.exact_right },
+        ]
     }
 }
 
@@ -266,7 +273,13 @@ mod tests {
         };
         let records = [record(true, true), record(true, false), record(false, false), record(true, true)];
         let of = |nodes| {
-            let facts = ScaleFacts { nodes, exact: vec![true, false], ..ScaleFacts::default() };
+            let facts = ScaleFacts {
+                nodes,
+                exact: [[true, true], [true, false], [false, true]]
+                    .map(|[is_right, is_shortlisted]| ExactScan { is_right, is_shortlisted })
+                    .to_vec(),
+                ..ScaleFacts::default()
+            };
             ScaleLine::of(&facts, &records)
         };
         [72, 1008, 10_008, 100_008].map(of).to_vec()
@@ -277,7 +290,8 @@ mod tests {
         let line = &lines()[1];
         assert_eq!((line.trials, line.successes, line.wrong_answers), (4, 3, 1));
         assert_eq!((line.shortlisted_at_first, line.shortlisted_at_last), (2, 4));
-        assert_eq!((line.exact().successes, line.exact().trials), (1, 2));
+        let [right, kept] = line.exact();
+        assert_eq!((right.successes, right.trials, kept.successes, kept.trials), (2, 3, 1, 2));
         assert!((line.first_look_ms_median - 40.0).abs() < 1e-9 && (line.later_look_ms_median - 60.0).abs() < 1e-9);
     }
 

@@ -89,3 +89,46 @@ impl<'m> Slots<'m> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::vec::Vec;
+
+    fn nodes(slots: &Slots<'_>) -> Vec<u32> {
+        slots.nodes().map(|node| node.0).collect()
+    }
+
+    #[test]
+    fn who_is_chosen_again_or_kept_stays_and_newcomers_lack_all_looks() {
+        let mut memory = [Slot::EMPTY; 4];
+        let mut slots = Slots::new(&mut memory);
+        let mut renewed = Vec::new();
+        slots.choose(&[3, 5, 8], &[], |slot| renewed.push(slot));
+        assert_eq!((nodes(&slots), &*renewed), ([3, 5, 8].to_vec(), &[0, 1, 2][..]));
+        slots.cover(0);
+        assert!(!slots.lack(0) && slots.lack(1));
+        renewed.clear();
+        let kept = [Hypothesis::new(NodeId(8), [0.0; 2], 0.0)];
+        slots.choose(&[1, 5, 9], &kept, |slot| renewed.push(slot));
+        assert_eq!((nodes(&slots), &*renewed), ([1, 5, 8, 9].to_vec(), &[0, 3][..]));
+        let lacking = |look: usize| (0..4).filter_map(|slot| slots.node_lacking(slot, look)).map(|node| node.0);
+        assert_eq!(lacking(0).collect::<Vec<_>>(), [1, 9]);
+        assert_eq!(lacking(1).collect::<Vec<_>>(), [1, 5, 8, 9]);
+    }
+
+    #[test]
+    fn without_slots_every_node_has_its_place_and_lacks_every_look() {
+        let slots = Slots::new(&mut []);
+        assert!(!slots.are_chosen() && !slots.lack(0));
+        assert_eq!(slots.node_lacking(7, 3), Some(NodeId(7)));
+    }
+
+    #[test]
+    fn of_more_nodes_than_slots_the_last_have_none() {
+        let mut memory = [Slot::EMPTY; 2];
+        let mut slots = Slots::new(&mut memory);
+        slots.choose(&[4, 6, 7], &[], |_| ());
+        assert_eq!(nodes(&slots), [4, 6]);
+    }
+}
