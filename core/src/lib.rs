@@ -25,6 +25,7 @@
 //! | [`stereo`] | two real cameras: calibration from matched corners, with its covariance, and rectification |
 //! | [`pgh`] | pairwise geometric histograms: shape and fixed-point construction |
 //! | [`matching`] | Bhattacharyya coefficients of histograms, score of a scene against a view |
+//! | [`gist`] | the gist of a view in 64 bytes: a first stage for maps of many places |
 //! | [`database`] | the topological database as a written byte format, read in place |
 //! | [`explore`] | exploring a building by wall following, from an unknown start |
 //! | [`localize`] | candidate filtering and the localiser itself |
@@ -43,6 +44,7 @@ extern crate std;
 pub mod database;
 pub mod explore;
 pub mod geometry;
+pub mod gist;
 pub mod localize;
 pub mod matching;
 pub mod math;

@@ -9,11 +9,12 @@
 //! outcomes -> statistics -> sweep -> report
 //! ```
 //!
-//! Arrows between modules point one way: `random, whole_file < world < camera < uncertainty < learning < scenario < monte_carlo <
+//! Arrows between modules point one way: `random, whole_file, map_file < world < camera < uncertainty < learning < scenario < monte_carlo <
 //! sweep < report < cli`.
 
 pub mod camera;
 pub mod learning;
+pub mod map_file;
 pub mod monte_carlo;
 pub mod random;
 pub mod report;

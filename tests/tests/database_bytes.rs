@@ -1,6 +1,9 @@
 //! The byte format of the database against truncation, damage and hostile hands.
 
-use edgeloc::database::{NodeId, NodeModel, OpenError, TopologicalDatabase, WriteError, encoded_len, format, write};
+use edgeloc::database::{
+    IndexError, IndexShape, NodeId, NodeModel, OpenError, TopologicalDatabase, WriteError, begin_index, encoded_len,
+    format, indexed_len, seal, write,
+};
 use edgeloc::geometry::{Angle, Heading, Point2, Point3, Polarity, Scene, Segment2, Segment3, StereoRig};
 use edgeloc::localize::{HeadingPrior, Localizer, LocalizerConfig, Look};
 use edgeloc_tests::strategies::fixed_cases;
@@ -81,8 +84,8 @@ fn another_file_and_another_version_are_named_as_such() {
     other[0] = b'E';
     assert_eq!(TopologicalDatabase::open(&other).expect_err("magic"), OpenError::NotADatabase);
     let mut newer = bytes;
-    newer[8..10].copy_from_slice(&3_u16.to_le_bytes());
-    assert_eq!(TopologicalDatabase::open(&with_checksum(newer)).expect_err("version"), OpenError::Version { found: 3 });
+    newer[8..10].copy_from_slice(&4_u16.to_le_bytes());
+    assert_eq!(TopologicalDatabase::open(&with_checksum(newer)).expect_err("version"), OpenError::Version { found: 4 });
 }
 
 #[test]
@@ -155,6 +158,112 @@ fn any_flipped_byte_under_a_right_checksum_is_survived() {
     assert!(opened > bytes.len(), "most flips change a number only: {opened} of {}", 3 * bytes.len());
 }
 
+const SHAPE: IndexShape = IndexShape { sectors: 3, poses: 2 };
+
+/// A map with an index whose bytes count up.
+fn indexed_bytes(node_count: usize) -> Vec<u8> {
+    let plain = database_bytes(&RIG, &tiny_nodes(node_count));
+    let length = indexed_len(&TopologicalDatabase::open(&plain).expect("a map"), SHAPE).expect("a small one");
+    let mut bytes = plain;
+    bytes.resize(length, 0);
+    let parts = begin_index(&mut bytes, SHAPE).expect("room enough");
+    parts.mean.iter_mut().zip(0..).for_each(|(mean, number)| *mean = i16::into(number));
+    parts.axes[5][7] = (-300).into();
+    for (code, number) in parts.codes.iter_mut().zip(0..) {
+        *code = [number; 64];
+    }
+    assert_eq!(seal(&mut bytes), Ok(length));
+    bytes
+}
+
+#[test]
+fn an_index_is_read_as_it_was_written_and_the_map_is_the_same() {
+    let (plain, bytes) = (database_bytes(&RIG, &tiny_nodes(4)), indexed_bytes(4));
+    let (before, map) = (TopologicalDatabase::open(&plain).expect("a map"), TopologicalDatabase::open(&bytes));
+    let map = map.expect("sealed");
+    assert!(before.index().is_none() && map.without_index().index().is_none());
+    assert_eq!((map.byte_len(), before.byte_len()), (bytes.len(), plain.len()));
+    assert_eq!(map.segment_bytes(), before.segment_bytes());
+    let index = map.index().expect("an index");
+    assert_eq!(index.shape(), SHAPE);
+    assert_eq!((index.mean()[9].get(), index.axes()[5][7].get()), (9, -300));
+    // Four nodes of two poses in a sector.
+    assert_eq!(index.sector(1).iter().map(|code| code[0]).collect::<Vec<i8>>(), (8..16).collect::<Vec<i8>>());
+    assert!(index.sector(3).is_empty() && index.sector(u16::MAX).is_empty());
+}
+
+#[test]
+fn an_index_is_replaced_and_refused_where_there_is_no_room() {
+    let mut bytes = indexed_bytes(4);
+    let larger = IndexShape { sectors: 4, ..SHAPE };
+    assert!(matches!(begin_index(&mut bytes, larger), Err(IndexError::OutputTooShort { .. })));
+    bytes.resize(bytes.len() + 1000, 7);
+    begin_index(&mut bytes, larger).expect("room enough").codes.fill([1; 64]);
+    let length = seal(&mut bytes).expect("whole");
+    let map = TopologicalDatabase::open(&bytes[..length]).expect("sealed");
+    assert_eq!(map.index().map(|index| index.shape()), Some(larger));
+    for shape in [IndexShape { sectors: 0, ..SHAPE }, IndexShape { poses: 65, ..SHAPE }] {
+        assert_eq!(begin_index(&mut bytes, shape).err(), Some(IndexError::Shape));
+    }
+    assert!(matches!(begin_index(&mut [0; 50], SHAPE), Err(IndexError::Open(_))));
+}
+
+#[test]
+fn a_damaged_index_is_refused() {
+    let bytes = indexed_bytes(2);
+    for length in (0..bytes.len()).step_by(97) {
+        assert!(matches!(TopologicalDatabase::open(&bytes[..length]), Err(OpenError::Truncated { .. })));
+    }
+    for position in (0..bytes.len()).step_by(61).chain(bytes.len() - 64..bytes.len()) {
+        let mut damaged = bytes.clone();
+        damaged[position] ^= 0x10;
+        assert!(TopologicalDatabase::open(&damaged).is_err(), "byte {position}");
+    }
+    // Sectors and poses that contradict the length, or make no sense, even with a right checksum.
+    for (sectors, poses) in [(0_u16, 0_u16), (0, 2), (3, 0), (4, 2), (2, 3), (400, 1), (1, 400), (u16::MAX, u16::MAX)] {
+        let mut absurd = bytes.clone();
+        absurd[68..70].copy_from_slice(&sectors.to_le_bytes());
+        absurd[70..72].copy_from_slice(&poses.to_le_bytes());
+        let opened =
+            TopologicalDatabase::open(&with_checksum(absurd)).map(|map| map.index().map(|index| index.shape()));
+        let is_refused = matches!(opened, Err(OpenError::Counts | OpenError::Index | OpenError::Truncated { .. }));
+        // The same number of codes, otherwise told apart, is a legal index.
+        assert!(is_refused || sectors * poses == 6, "{sectors} x {poses}: {opened:?}");
+    }
+    let mut no_codes = database_bytes(&RIG, &tiny_nodes(2));
+    no_codes[68..70].copy_from_slice(&5_u16.to_le_bytes());
+    assert_eq!(TopologicalDatabase::open(&with_checksum(no_codes)).err(), Some(OpenError::Index));
+}
+
+#[test]
+fn any_codes_and_axes_are_survived() {
+    let mut bytes = indexed_bytes(5);
+    let head = format::HEADER_LEN + 5 * format::NODE_LEN;
+    let segments = TopologicalDatabase::open(&bytes).expect("a map").segment_count() * format::SEGMENT_LEN;
+    for (filling, byte) in bytes[head + segments..].iter_mut().zip([0x80, 0xff, 0x7f, 0x01, 0x00].into_iter().cycle()) {
+        *filling = byte;
+    }
+    let bytes = with_checksum(bytes);
+    let world = furnished_room();
+    let heading = Heading::new(Angle::from_degrees(40.0)).expect("finite");
+    let scene = all_seeing_scene(&world, &RIG, Point2::new(2.0, 2.0), heading);
+    for config in [LocalizerConfig::paper(), LocalizerConfig::edgeloc()] {
+        let config = LocalizerConfig { shortlist: 2, ..config };
+        let map = TopologicalDatabase::open(&bytes).expect("a right checksum");
+        let mut memory = vec![0; Localizer::memory_len_in(&config, &map)];
+        let mut localizer = Localizer::new(map, &config, &mut memory).expect("memory of the length asked for");
+        for _ in 0..4 {
+            let look = Look {
+                heading: Some(HeadingPrior::exact(heading)),
+                motion_since_last: None,
+                scene: Scene::new(&scene),
+            };
+            localizer.observe(&look).expect("a heading is given");
+            assert!(localizer.candidates().candidates().count() <= 2);
+        }
+    }
+}
+
 fn coordinate() -> impl Strategy<Value = f32> {
     prop_oneof![8 => -32.767..32.767_f32, 1 => Just(32.767), 1 => Just(-32.767), 1 => Just(0.0)]
 }
@@ -212,8 +321,8 @@ proptest! {
         let mut bytes = database_bytes(&RIG, &[TinyNode { position: Point2::default(), segments }]);
         let end = bytes.len();
         // Everything but the node's own counts.
-        bytes[68..76].copy_from_slice(&tables[..8]);
-        bytes[84..end].copy_from_slice(&tables[16..16 + end - 84]);
+        bytes[72..80].copy_from_slice(&tables[..8]);
+        bytes[88..end].copy_from_slice(&tables[16..16 + end - 88]);
         prop_assert!(exercise(&with_checksum(bytes), &[]).is_ok());
     }
 

@@ -97,6 +97,7 @@ fn any_config() -> impl Strategy<Value = LocalizerConfig> {
             min_length_px,
             horizontal_exclusion: Angle::from_degrees(exclusion_deg),
             max_segments,
+            shortlist: 500,
             verification: None,
         },
     )
@@ -287,6 +288,7 @@ fn settings_out_of_range_are_refused_by_name() {
         ),
         (LocalizerConfig { max_segments: 0, ..paper }, ConfigError::MaxSegments),
         (LocalizerConfig { max_segments: 1025, ..paper }, ConfigError::MaxSegments),
+        (LocalizerConfig { shortlist: 0, ..paper }, ConfigError::Shortlist),
     ];
     for (config, expected) in cases {
         let database = TopologicalDatabase::open(&bytes).expect("just written");

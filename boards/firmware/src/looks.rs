@@ -146,6 +146,7 @@ fn read_config(cursor: &mut Cursor<'_>) -> Result<LocalizerConfig, LooksError> {
         max_segments: cursor.u16()?,
         min_length_px: cursor.f32()?,
         horizontal_exclusion: Angle::from_radians(cursor.f32()?),
+        shortlist: LocalizerConfig::paper().shortlist,
         verification: None,
     })
 }

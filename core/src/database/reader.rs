@@ -1,9 +1,10 @@
 //! Reading a topological database in place.
 
+use super::ViewIndex;
 use super::format::{self, HEADER_LEN, Header, NodeEntry, SegmentEntry};
 use crate::geometry::{CameraError, PinholeCamera, Point2, Point3, Polarity, RigError, Segment3, StereoRig};
 use core::fmt;
-use zerocopy::FromBytes;
+use zerocopy::{FromBytes, IntoBytes};
 
 /// Identity of a node: its index in the database.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
@@ -23,13 +24,15 @@ pub struct TopologicalDatabase<'a> {
     self_agreement: f32,
     nodes: &'a [NodeEntry],
     segments: &'a [SegmentEntry],
+    index: Option<ViewIndex<'a>>,
 }
 
 impl<'a> TopologicalDatabase<'a> {
     /// Checks `bytes` and opens the database at their beginning.
     ///
     /// Guarantees afterwards: magic, version and CRC are right; the counts fit the bytes; there is at least one node;
-    /// every node's segments lie inside the table; the rig is [valid](StereoRig::checked). Takes one pass over the bytes.
+    /// every node's segments lie inside the table; an index has rows for all nodes; the rig is
+    /// [valid](StereoRig::checked). Takes one pass over the bytes.
     ///
     /// # Errors
     /// When any of that does not hold: the first thing that is wrong.
@@ -44,7 +47,8 @@ impl<'a> TopologicalDatabase<'a> {
         }
         let (node_count, segment_count) = (header.node_count.get() as usize, header.segment_count.get() as usize);
         let length = header.length.get() as usize;
-        if format::total_len(node_count, segment_count) != Some(length) {
+        let index_shape = (header.sectors.get(), header.poses.get());
+        if format::total_len(node_count, segment_count, index_shape) != Some(length) {
             return Err(OpenError::Counts);
         }
         let bytes = bytes.get(..length).ok_or(OpenError::Truncated { length: bytes.len(), needed: length })?;
@@ -58,8 +62,9 @@ impl<'a> TopologicalDatabase<'a> {
         let tables = &bytes[HEADER_LEN..];
         let (nodes, tables) =
             <[NodeEntry]>::ref_from_prefix_with_elems(tables, node_count).map_err(|_| OpenError::Counts)?;
-        let (segments, _) =
+        let (segments, index) =
             <[SegmentEntry]>::ref_from_prefix_with_elems(tables, segment_count).map_err(|_| OpenError::Counts)?;
+        let index = ViewIndex::read(index, node_count, index_shape).ok_or(OpenError::Index)?;
         let mut expected_first = 0_u64;
         for node in nodes {
             if u64::from(node.first_segment.get()) != expected_first {
@@ -74,7 +79,7 @@ impl<'a> TopologicalDatabase<'a> {
         if !(0.0..=1.0).contains(&self_agreement) {
             return Err(OpenError::SelfAgreement);
         }
-        Ok(Self { rig, views_per_node: header.views_per_node.get(), self_agreement, nodes, segments })
+        Ok(Self { rig, views_per_node: header.views_per_node.get(), self_agreement, nodes, segments, index })
     }
 
     /// The rig that the database was learned with.
@@ -95,9 +100,29 @@ impl<'a> TopologicalDatabase<'a> {
         (self.self_agreement > 0.0).then_some(self.self_agreement)
     }
 
+    /// The index of the nodes' views, if the map has one.
+    #[must_use]
+    pub const fn index(&self) -> Option<&ViewIndex<'a>> {
+        self.index.as_ref()
+    }
+
+    /// The same map as if it had no index.
+    #[must_use]
+    pub fn without_index(self) -> Self {
+        Self { index: None, ..self }
+    }
+
+    /// The bytes of all segments, node after node.
+    #[must_use]
+    pub fn segment_bytes(&self) -> &'a [u8] {
+        self.segments.as_bytes()
+    }
+
     /// Length of the database in bytes.
-    pub(super) fn byte_len(&self) -> usize {
-        HEADER_LEN + size_of_val(self.nodes) + size_of_val(self.segments)
+    #[must_use]
+    pub fn byte_len(&self) -> usize {
+        let index = self.index.as_ref().map_or(0, ViewIndex::byte_len);
+        HEADER_LEN + size_of_val(self.nodes) + size_of_val(self.segments) + index
     }
 
     /// Number of nodes, at least one.
@@ -205,6 +230,8 @@ pub enum OpenError {
     Empty,
     /// The self-agreement is not within 0 to 1.
     SelfAgreement,
+    /// The index has more sectors or poses than any, or the one without the other.
+    Index,
     /// The camera makes no sense.
     Camera(CameraError),
     /// The rig makes no sense.
@@ -221,6 +248,7 @@ impl fmt::Display for OpenError {
             Self::Counts => f.write_str("database counts contradict each other"),
             Self::Empty => f.write_str("database holds no node or no views"),
             Self::SelfAgreement => f.write_str("database self-agreement is not within 0 to 1"),
+            Self::Index => f.write_str("database index has no legal number of sectors or poses"),
             Self::Camera(error) => write!(f, "database camera: {error}"),
             Self::Rig(error) => write!(f, "database rig: {error}"),
         }

@@ -22,7 +22,7 @@ pub struct NodeModel<'a> {
 #[must_use]
 pub fn encoded_len(nodes: &[NodeModel<'_>]) -> Option<usize> {
     let segment_count = nodes.iter().try_fold(0_usize, |count, node| count.checked_add(node.segments.len()))?;
-    format::total_len(nodes.len(), segment_count)
+    format::total_len(nodes.len(), segment_count, (0, 0))
 }
 
 /// Writes the database of `nodes`, learned by `rig` with so many views a node, to the beginning of `out`.
@@ -79,12 +79,17 @@ pub fn state_self_agreement(bytes: &mut [u8], agreement: f32) -> Result<(), Stat
     let length = TopologicalDatabase::open(bytes).map_err(StateError::Open)?.byte_len();
     let database = &mut bytes[..length];
     change_header(database, |header| header.self_agreement = agreement.into());
-    let checksum = format::checksum(database);
-    change_header(database, |header| header.crc = checksum.into());
+    state_checksum(database);
     Ok(())
 }
 
-fn change_header(database: &mut [u8], change: impl FnOnce(&mut Header)) {
+/// States the checksum of a whole database.
+pub(super) fn state_checksum(database: &mut [u8]) {
+    let checksum = format::checksum(database);
+    change_header(database, |header| header.crc = checksum.into());
+}
+
+pub(super) fn change_header(database: &mut [u8], change: impl FnOnce(&mut Header)) {
     if let Ok((header, _)) = Header::mut_from_prefix(database) {
         change(header);
     }
@@ -110,7 +115,7 @@ impl fmt::Display for StateError {
 
 impl core::error::Error for StateError {}
 
-fn header_of(rig: &StereoRig, views_per_node: u16, lengths: [usize; 3]) -> Header {
+pub(super) fn header_of(rig: &StereoRig, views_per_node: u16, lengths: [usize; 3]) -> Header {
     let [length, node_count, segment_count] = lengths.map(|value| (value as u32).into());
     Header {
         magic: format::MAGIC,
@@ -128,19 +133,25 @@ fn header_of(rig: &StereoRig, views_per_node: u16, lengths: [usize; 3]) -> Heade
         near_limit_m: rig.near_limit_m.into(),
         model_depths_m: [rig.nearest_model_m.into(), rig.farthest_model_m.into()],
         self_agreement: 0.0.into(),
+        sectors: 0.into(),
+        poses: 0.into(),
     }
 }
 
 fn node_entry(node: &NodeModel<'_>, first_segment: u32) -> Option<NodeEntry> {
+    Some(NodeEntry {
+        position_mm: position_mm(node.position)?,
+        first_segment: first_segment.into(),
+        segment_count: (node.segments.len() as u32).into(),
+    })
+}
+
+pub(super) fn position_mm(position: Point2) -> Option<[I32; 2]> {
     let mm = |metres: f32| -> Option<I32> {
         let millimetres = math::round(metres * 1000.0);
         (math::abs(millimetres) <= 2.0e9).then(|| (millimetres as i32).into())
     };
-    Some(NodeEntry {
-        position_mm: [mm(node.position.x)?, mm(node.position.y)?],
-        first_segment: first_segment.into(),
-        segment_count: (node.segments.len() as u32).into(),
-    })
+    Some([mm(position.x)?, mm(position.y)?])
 }
 
 fn segment_entry(segment: &Segment3) -> Option<SegmentEntry> {
@@ -241,8 +252,8 @@ mod tests {
     #[test]
     fn too_little_room_says_how_much_is_needed() {
         let nodes = [NodeModel { position: Point2::default(), segments: &[] }];
-        let error = write(&StereoRig::reference(), 12, &nodes, &mut [0; 83]).expect_err("84 bytes needed");
-        assert_eq!(error, WriteError::OutputTooShort { capacity: 83, needed: 84 });
+        let error = write(&StereoRig::reference(), 12, &nodes, &mut [0; 87]).expect_err("88 bytes needed");
+        assert_eq!(error, WriteError::OutputTooShort { capacity: 87, needed: 88 });
     }
 
     #[test]

@@ -93,11 +93,27 @@ impl<'m> CandidateSet<'m> {
         }
     }
 
-    /// Replaces every node's score after a look; all stay in play.
-    pub(super) fn replace(&mut self, score_q30: impl Fn(NodeId) -> i64) {
+    /// Replaces every node's score after a look by the best that it has, 0 where it has none; all are in play.
+    pub(super) fn replace(&mut self, scores_q30: impl Iterator<Item = (NodeId, i64)>) {
         self.iteration = self.iteration.saturating_add(1);
-        for (id, node) in self.nodes.iter_mut().enumerate() {
-            node.sum_q30 = score_q30(NodeId(id as u32));
+        self.nodes.fill(NodeScore { sum_q30: i64::MIN, in_play: 1 });
+        for (id, score_q30) in scores_q30 {
+            if let Some(node) = self.nodes.get_mut(id.0 as usize) {
+                node.sum_q30 = node.sum_q30.max(score_q30);
+            }
+        }
+        for node in self.nodes.iter_mut().filter(|node| node.sum_q30 == i64::MIN) {
+            node.sum_q30 = 0;
+        }
+    }
+
+    /// Leaves only some nodes in play.
+    pub(super) fn restrict(&mut self, chosen: impl Iterator<Item = NodeId>) {
+        self.nodes.iter_mut().for_each(|node| node.in_play = 0);
+        for id in chosen {
+            if let Some(node) = self.nodes.get_mut(id.0 as usize) {
+                node.in_play = 1;
+            }
         }
     }
 

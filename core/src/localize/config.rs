@@ -24,6 +24,9 @@ pub struct LocalizerConfig {
     pub horizontal_exclusion: Angle,
     /// Segments kept in a scene and in a prediction, the longest first, 1 to 1024.
     pub max_segments: u16,
+    /// In maps with an index and more nodes than this, only so many are scored: those that the first stage finds most
+    /// similar, 1 to 4096.
+    pub shortlist: u16,
     /// Verify hypotheses about every node, and answer with a pose; without, the paper's localiser answers.
     pub verification: Option<VerificationConfig>,
 }
@@ -40,6 +43,7 @@ impl LocalizerConfig {
             min_length_px: 12.0,
             horizontal_exclusion: Angle::from_degrees(5.0),
             max_segments: 150,
+            shortlist: 300,
             verification: None,
         }
     }
@@ -77,6 +81,9 @@ impl LocalizerConfig {
         if !(1..=1024).contains(&self.max_segments) {
             return Err(ConfigError::MaxSegments);
         }
+        if !(1..=4096).contains(&self.shortlist) {
+            return Err(ConfigError::Shortlist);
+        }
         if self.verification.is_some_and(|verification| !verification.is_legal()) {
             return Err(ConfigError::Verification);
         }
@@ -101,6 +108,8 @@ pub enum ConfigError {
     HorizontalExclusion,
     /// The number of segments is not within 1 to 1024.
     MaxSegments,
+    /// The shortlist is not within 1 to 4096.
+    Shortlist,
     /// A parameter of the verification is out of its range.
     Verification,
 }
@@ -115,6 +124,7 @@ impl fmt::Display for ConfigError {
             Self::MinLength => "least segment length is not within 0 to 2048 px",
             Self::HorizontalExclusion => "horizontal exclusion is not within 0 to below 90 degrees",
             Self::MaxSegments => "number of segments is not within 1 to 1024",
+            Self::Shortlist => "length of the shortlist is not within 1 to 4096",
             Self::Verification => "a parameter of the verification is out of its range",
         })
     }

@@ -1,5 +1,6 @@
 //! The localiser: one verb, whichever method answers.
 
+use super::extent::Extent;
 use super::paper::PaperLocalizer;
 use super::verify::{self, VerifyingLocalizer};
 use super::workspace;
@@ -16,6 +17,10 @@ use core::fmt;
 ///
 /// The verifying localiser: poses around every node are checked against all looks; the answer is a pose, with its
 /// covariance and a probability, or the reason why there is none.
+///
+/// In a map with an index and more nodes than the [shortlist](LocalizerConfig::shortlist) has room for, either scores only
+/// those nodes whose views are most like what is seen. The paper's chooses them at the first look by which any node
+/// scores. The verifying one chooses anew at each look, by all looks so far, and checks who enters against all of them.
 #[derive(Debug)]
 pub struct Localizer<'m> {
     method: Method<'m>,
@@ -29,16 +34,33 @@ enum Method<'m> {
 }
 
 impl<'m> Localizer<'m> {
-    /// Number of `u64` of working memory for a configuration and a number of nodes.
+    /// Number of `u64` of working memory for a configuration and a number of nodes, in a map without an index.
     #[must_use]
     pub const fn memory_len(config: &LocalizerConfig, node_count: usize) -> usize {
+        Self::memory_len_for(config, Extent::whole(node_count))
+    }
+
+    /// The same in a map whose index has views from `poses` poses about each node: mostly that of the
+    /// [shortlist](LocalizerConfig::shortlist), and 16 bytes a node and 2 a pose.
+    #[must_use]
+    pub const fn indexed_memory_len(config: &LocalizerConfig, node_count: usize, poses: usize) -> usize {
+        Self::memory_len_for(config, Extent::indexed(config, node_count, poses))
+    }
+
+    /// The same in the map `database`.
+    #[must_use]
+    pub fn memory_len_in(config: &LocalizerConfig, database: &TopologicalDatabase<'_>) -> usize {
+        Self::memory_len_for(config, Extent::of(config, database))
+    }
+
+    const fn memory_len_for(config: &LocalizerConfig, extent: Extent) -> usize {
         match &config.verification {
-            None => workspace::memory_len(config, node_count),
-            Some(verification) => verify::memory_len(config, verification, node_count),
+            None => workspace::memory_len(config, extent),
+            Some(verification) => verify::memory_len(config, verification, extent),
         }
     }
 
-    /// A localiser in `database`, working in `memory` of at least [`Self::memory_len`] words.
+    /// A localiser in `database`, working in `memory` of at least [`Self::memory_len_in`] words.
     ///
     /// # Errors
     /// When a parameter is out of range, or the memory too small: by how much.
@@ -77,7 +99,8 @@ impl<'m> Localizer<'m> {
 
     /// Accumulated scores of all nodes, and which are still candidates; kept after a decision until the next look.
     ///
-    /// When verifying, a node's score is that of the best pose beside it, over all looks; all stay in play.
+    /// When verifying, a node's score is that of the best pose beside it, over all looks; all stay in play, or all of the
+    /// shortlist.
     #[must_use]
     pub const fn candidates(&self) -> &CandidateSet<'m> {
         match &self.method {

@@ -3,6 +3,8 @@
 mod candidates;
 mod config;
 mod decision;
+mod extent;
+mod first_stage;
 mod localizer;
 mod look;
 mod paper;

@@ -1,5 +1,7 @@
 //! The paper's localiser: the loop of its Fig. 1(a).
 
+use super::extent::Extent;
+use super::first_stage::FirstStage;
 use super::segment_filter::SegmentFilter;
 use super::workspace::Workspace;
 use super::{
@@ -22,6 +24,7 @@ pub(super) struct PaperLocalizer<'m> {
     margin: ScoreMargin,
     filter: SegmentFilter,
     candidates: CandidateSet<'m>,
+    first_stage: Option<FirstStage<'m>>,
     scene: SceneMatcher<'m>,
     is_finished: bool,
 }
@@ -35,13 +38,17 @@ impl<'m> PaperLocalizer<'m> {
     ) -> Result<Self, StartError> {
         let config = config.checked().map_err(StartError::Config)?;
         let margin = ScoreMargin::new(config.score_margin).ok_or(StartError::Config(ConfigError::ScoreMargin))?;
-        let memory = Workspace::divide(memory, &config, database.node_count()).map_err(StartError::Memory)?;
+        let extent = Extent::of(&config, &database);
+        let memory = Workspace::divide(memory, &config, extent).map_err(StartError::Memory)?;
+        let index = database.index().filter(|_| extent.has_first_stage());
+        let first_stage = index.map(|index| FirstStage::new(*index, database.rig().camera, memory.similarities));
         Ok(Self {
             database,
             config,
             margin,
             filter: SegmentFilter::new(&config),
             candidates: CandidateSet::new(memory.node_scores),
+            first_stage,
             scene: SceneMatcher {
                 lines: memory.scene_lines,
                 line_count: 0,
@@ -63,6 +70,7 @@ impl<'m> PaperLocalizer<'m> {
         if self.is_finished {
             self.reset();
         }
+        self.shortlist(heading, look.scene.segments());
         self.score_candidates(heading);
         self.candidates.filter(self.margin);
         let decision = self.decide();
@@ -73,6 +81,7 @@ impl<'m> PaperLocalizer<'m> {
     /// Forgets all looks.
     pub(super) fn reset(&mut self) {
         self.candidates.reset();
+        self.first_stage.iter_mut().for_each(FirstStage::clear);
         self.is_finished = false;
     }
 
@@ -92,6 +101,16 @@ impl<'m> PaperLocalizer<'m> {
         let mut builder = HistogramBuilder::new(&self.config.shape, self.scene.masses, self.scene.line_blocks)
             .map_err(ObserveError::Histograms)?;
         self.scene.rows.rebuild(&mut builder, lines).map_err(ObserveError::Capacity)
+    }
+
+    /// As long as no node has scored, leaves those in play that are most like what was seen so far.
+    fn shortlist(&mut self, heading: Heading, segments: &[Segment2]) {
+        let has_scored = self.candidates.leading_node().is_some_and(|(_, score)| score.sum_q30 > 0);
+        if let Some(stage) = self.first_stage.as_mut().filter(|_| !has_scored) {
+            let code = stage.code(segments);
+            stage.add(&code, core::iter::once(heading.angle().radians()));
+            self.candidates.restrict(stage.best(usize::from(self.config.shortlist)));
+        }
     }
 
     fn score_candidates(&mut self, heading: Heading) {

@@ -1,5 +1,6 @@
 //! The paper's localiser's memory: one slice from the caller, divided once.
 
+use super::extent::Extent;
 use super::{LocalizerConfig, NodeScore};
 use crate::geometry::CapacityError;
 use crate::matching::{BinPair, Panel, PanelRow, RootRows};
@@ -18,6 +19,7 @@ pub(super) struct Workspace<'m> {
     pub(super) panel_rows: &'m mut [PanelRow],
     pub(super) best_coefficients: &'m mut [i32],
     pub(super) node_scores: &'m mut [NodeScore],
+    pub(super) similarities: &'m mut [i16],
 }
 
 /// How many items each part has.
@@ -28,10 +30,11 @@ struct Lengths {
     pairs: usize,
     panel_rows: usize,
     nodes: usize,
+    similarities: usize,
 }
 
 impl Lengths {
-    const fn of(config: &LocalizerConfig, node_count: usize) -> Self {
+    const fn of(config: &LocalizerConfig, extent: Extent) -> Self {
         let (lines, bins) = (config.max_segments as usize, config.shape.bin_count());
         Self {
             lines,
@@ -39,14 +42,15 @@ impl Lengths {
             line_blocks: LineBlock::count_for(lines),
             pairs: RootRows::pairs_len(lines, bins),
             panel_rows: Panel::rows_len(bins),
-            nodes: node_count,
+            nodes: extent.nodes,
+            similarities: extent.compared,
         }
     }
 }
 
 /// Number of `u64` that a localiser works on.
-pub(super) const fn memory_len(config: &LocalizerConfig, node_count: usize) -> usize {
-    let lengths = Lengths::of(config, node_count);
+pub(super) const fn memory_len(config: &LocalizerConfig, extent: Extent) -> usize {
+    let lengths = Lengths::of(config, extent);
     sum(&[
         words::<Line>(lengths.lines),
         words::<Line>(lengths.lines),
@@ -57,6 +61,7 @@ pub(super) const fn memory_len(config: &LocalizerConfig, node_count: usize) -> u
         words::<PanelRow>(lengths.panel_rows),
         words::<i32>(lengths.lines),
         words::<NodeScore>(lengths.nodes),
+        words::<i16>(lengths.similarities),
     ])
 }
 
@@ -85,13 +90,13 @@ impl<'m> Workspace<'m> {
     pub(super) fn divide(
         memory: &'m mut [u64],
         config: &LocalizerConfig,
-        node_count: usize,
+        extent: Extent,
     ) -> Result<Self, CapacityError> {
-        let lengths = Lengths::of(config, node_count);
+        let lengths = Lengths::of(config, extent);
         let too_small = CapacityError {
             what: "localizer memory in 64-bit words",
             capacity: memory.len(),
-            needed: memory_len(config, node_count),
+            needed: memory_len(config, extent),
         };
         let mut rest = Rest::new(memory);
         let mut divide = || {
@@ -105,6 +110,7 @@ impl<'m> Workspace<'m> {
                 panel_rows: rest.take(lengths.panel_rows)?,
                 best_coefficients: rest.take(lengths.lines)?,
                 node_scores: rest.take(lengths.nodes)?,
+                similarities: rest.take(lengths.similarities)?,
             })
         };
         divide().ok_or(too_small)
@@ -140,10 +146,10 @@ mod tests {
     #[test]
     fn the_stated_length_is_just_enough() {
         let config = LocalizerConfig::paper();
-        const NEEDED: usize = memory_len(&LocalizerConfig::paper(), 72);
+        const NEEDED: usize = memory_len(&LocalizerConfig::paper(), Extent::whole(72));
         let mut memory = [0; NEEDED];
-        assert!(Workspace::divide(&mut memory, &config, 72).is_ok());
-        let error = Workspace::divide(&mut memory[1..], &config, 72).expect_err("one word short");
+        assert!(Workspace::divide(&mut memory, &config, Extent::whole(72)).is_ok());
+        let error = Workspace::divide(&mut memory[1..], &config, Extent::whole(72)).expect_err("one word short");
         assert_eq!((error.capacity, error.needed), (NEEDED - 1, NEEDED));
     }
 }

@@ -22,6 +22,7 @@ mod progress;
 mod replay;
 mod report;
 mod run;
+mod scale;
 mod scenario_args;
 mod sources;
 mod summary_table;
@@ -78,6 +79,7 @@ enum Verb {
     Sources(sources::Sources),
     Optimise(optimise::Optimise),
     Validate(validate::Validate),
+    Scale(scale::Scale),
 }
 
 /// Reads the command line and does what it asks.
@@ -102,6 +104,7 @@ pub(crate) fn main() -> ExitCode {
         Verb::Sources(verb) => verb.execute(),
         Verb::Optimise(verb) => verb.execute(),
         Verb::Validate(verb) => verb.execute(),
+        Verb::Scale(verb) => verb.execute(),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -51,7 +51,12 @@ pub(super) struct Bar {
 impl Bar {
     /// Counts a step.
     pub(super) fn step(&self) {
-        self.bar.inc(1);
+        self.steps(1);
+    }
+
+    /// Counts so many steps.
+    pub(super) fn steps(&self, count: usize) {
+        self.bar.inc(count as u64);
     }
 }
 

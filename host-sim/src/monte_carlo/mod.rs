@@ -1,5 +1,7 @@
 //! Kidnapped-robot trials: a robot is put down somewhere, looks around and says where it is.
 
+mod campus;
+mod campus_trials;
 mod look_images;
 mod looks;
 mod record;
@@ -12,6 +14,8 @@ mod start;
 mod statistics;
 mod trial;
 
+pub use campus::{Campus, CampusError};
+pub use campus_trials::{CampusRecord, CampusStart, ExactScan};
 pub use look_images::{LookImages, SourceEffect};
 pub use record::{Outcome, TrialRecord, UnknownKind};
 pub use replay::{Replay, replay};

@@ -53,7 +53,7 @@ impl<'s> Replay<'s> {
     pub fn run(&self, watch: impl FnMut(&LookEvent<'_>)) -> Result<TrialRecord, RunError> {
         let Self { site, setting, trial, map, start, .. } = *self;
         let database = self.map()?;
-        let mut memory = vec![0; memory_len(setting, database.node_count())];
+        let mut memory = vec![0; memory_len(setting, &database)];
         let trial = Trial { site, setting, trial, map, map_bytes: self.map_bytes.len() as u32, start };
         Ok(trial.run(database, &mut memory, &mut self.looks(), watch))
     }

@@ -140,7 +140,7 @@ fn run_block(sites: &Sites, part: &Part<'_>, map: u32, on_trial: &(dyn Fn(TimedT
             on_trial(TimedTrial { row, record, look_times });
         }
     };
-    let needed = |row: usize| maps[row].map_or(0, |(map, _)| memory_len(&settings[row], map.node_count()));
+    let needed = |row: usize| maps[row].map_or(0, |(map, _)| memory_len(&settings[row], &map));
     let memory_len = (0..settings.len()).map(needed).max().unwrap_or(0);
     tasks.par_iter().for_each_init(|| vec![0; memory_len], run_rows);
     Ok(())
@@ -159,8 +159,8 @@ fn same(count: usize, is_same: impl Fn(usize, usize) -> bool) -> Vec<Vec<usize>>
 }
 
 /// Words of memory for the localiser of a setting.
-pub(super) fn memory_len(setting: &Setting, node_count: usize) -> usize {
-    Localizer::memory_len(&setting.localizer_config(), node_count)
+pub(super) fn memory_len(setting: &Setting, map: &TopologicalDatabase<'_>) -> usize {
+    Localizer::memory_len_in(&setting.localizer_config(), map)
 }
 
 /// Why trials can't be run.

@@ -30,6 +30,8 @@ pub struct Site {
     pub unlearned: Vec<Point2>,
     /// Where the robot's calibrations come from: the same for every set of nodes.
     pub calibration_bench: Arc<CalibrationBench>,
+    /// The robot, if it comes calibrated from elsewhere; else each map is learned by one calibrated here.
+    pub robot: Option<Arc<CalibratedRig>>,
     node_views: Vec<NodeViews>,
 }
 
@@ -78,7 +80,8 @@ impl Site {
         }
         let unlearned = withheld.unlearned_centers(&free_space, &nodes);
         let node_views = NodeViews::observe_all(&rig, &world, &occluders, &nodes, scenario.learning.views);
-        Ok(Self { world, occluders, free_space, rig, nodes, withheld, unlearned, calibration_bench, node_views })
+        let robot = None;
+        Ok(Self { world, occluders, free_space, rig, nodes, withheld, unlearned, calibration_bench, robot, node_views })
     }
 
     /// Whether a robot can be put down so.
@@ -92,7 +95,8 @@ impl Site {
         Ok(())
     }
 
-    /// Learns the map, with the `map_index`-th draw of the uncertainty sources: the bytes of a topological database.
+    /// Learns the map, with the `map_index`-th draw of the uncertainty sources: the bytes of a topological database, with an
+    /// index if it has more nodes than the localiser's shortlist.
     ///
     /// # Errors
     /// When what was learned does not fit the database format.
@@ -115,13 +119,17 @@ impl Site {
                 database::state_self_agreement(&mut bytes, agreement).expect("a share, of a map just written");
             }
         }
+        if self.nodes.len() > usize::from(scenario.localizer.shortlist) {
+            bytes = learning::indexed(&bytes).map_err(|_| WriteError::TooLarge)?;
+        }
         Ok(bytes)
     }
 
     /// The rig as the robot of the `map_index`-th map knows it: the one that learned the map and is put down with it.
     #[must_use]
     pub fn calibrated_rig(&self, sources: &Sources, seed: u64, map_index: u32) -> CalibratedRig {
-        self.calibration_bench.calibrated_rig(sources, seed, u64::from(map_index))
+        let calibrated_here = || self.calibration_bench.calibrated_rig(sources, seed, u64::from(map_index));
+        self.robot.as_deref().cloned().unwrap_or_else(calibrated_here)
     }
 
     /// How well the nodes cover the free space.

@@ -123,6 +123,7 @@ fn check_localizer(localizer: &LocalizerSettings) -> Result<(), IllegalValue> {
     within("localizer.min_length_px", localizer.min_length_px, 0.0..=2048.0, "12 px is the default")?;
     within("localizer.horizontal_exclusion_deg", localizer.horizontal_exclusion_deg, 0.0..=89.0, "5 is the default")?;
     within("localizer.max_segments", localizer.max_segments, 1..=1024, "150 is the default")?;
+    within("localizer.shortlist", localizer.shortlist, 1..=4096, "300 is the default")?;
     within("localizer.pgh.distance_bins", pgh.distance_bins, 1..=256, "the paper's best is 15")?;
     within("localizer.pgh.angle_bins", pgh.angle_bins, 1..=256, "the paper's best is 32")?;
     within("localizer.pgh.max_distance_px", pgh.max_distance_px, 1.0..=2048.0, "200 to 600 hardly matter")?;

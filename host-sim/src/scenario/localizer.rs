@@ -24,6 +24,8 @@ pub struct LocalizerSettings {
     pub horizontal_exclusion_deg: f64,
     /// The longest segments of a scene that enter the matching.
     pub max_segments: u16,
+    /// Nodes that are scored in a map with an index and more nodes than that: those most like what is seen.
+    pub shortlist: u16,
     /// The pairwise geometric histograms.
     pub pgh: PghSettings,
     /// Geometric verification, with `kind = "edgeloc"`.
@@ -40,6 +42,7 @@ impl Default for LocalizerSettings {
             min_length_px: 12.0,
             horizontal_exclusion_deg: 5.0,
             max_segments: 150,
+            shortlist: 300,
             pgh: PghSettings::default(),
             verification: VerificationSettings::default(),
         }
@@ -66,6 +69,7 @@ impl LocalizerSettings {
             min_length_px: self.min_length_px as f32,
             horizontal_exclusion: Angle::from_degrees(self.horizontal_exclusion_deg as f32),
             max_segments: self.max_segments,
+            shortlist: self.shortlist,
             verification: match self.kind {
                 LocalizerKind::Paper => None,
                 LocalizerKind::Edgeloc => Some(self.verification.config()),

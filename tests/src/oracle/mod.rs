@@ -7,6 +7,7 @@
 mod attempt;
 mod candidates;
 mod character_map;
+pub mod gist;
 mod histogram;
 mod matching;
 mod prediction;

@@ -6,29 +6,31 @@ use crate::source::root_references;
 /// A module at the root of a crate and the modules there that it may know besides itself.
 type Arrow = (&'static str, &'static [&'static str]);
 
-/// `math < geometry < pgh < matching`, `geometry < stereo`, `geometry < explore`, `geometry < database`; `localize` alone knows database and matching both.
+/// `math < geometry < pgh < matching < gist`, `geometry < stereo`, `geometry < explore`, `geometry < database`; `localize` alone knows database and matching both.
 const CORE: &[Arrow] = &[
     ("math", &[]),
     ("geometry", &["math"]),
     ("stereo", &["math", "geometry"]),
     ("pgh", &["math", "geometry"]),
     ("matching", &["math", "geometry", "pgh"]),
+    ("gist", &["math", "geometry", "matching"]),
     ("database", &["math", "geometry"]),
     ("explore", &["math", "geometry"]),
-    ("localize", &["math", "geometry", "pgh", "matching", "database"]),
+    ("localize", &["math", "geometry", "pgh", "matching", "gist", "database"]),
 ];
 
-/// `random, whole_file < world < camera < uncertainty < learning < scenario < monte_carlo < sweep < report < cli`; an uncertainty
+/// `random, whole_file, map_file < world < camera < uncertainty < learning < scenario < monte_carlo < sweep < report < cli`; an uncertainty
 /// source never sees the world.
 const HOST_SIM: &[Arrow] = &[
     ("random", &[]),
     ("whole_file", &[]),
+    ("map_file", &[]),
     ("world", &["random", "whole_file"]),
     ("camera", &["random", "world"]),
     ("uncertainty", &["random", "camera"]),
-    ("learning", &["random", "world", "camera", "uncertainty"]),
+    ("learning", &["random", "map_file", "world", "camera", "uncertainty"]),
     ("scenario", &["random", "world", "camera", "uncertainty", "learning"]),
-    ("monte_carlo", &["random", "world", "camera", "uncertainty", "learning", "scenario"]),
+    ("monte_carlo", &["random", "whole_file", "map_file", "world", "camera", "uncertainty", "learning", "scenario"]),
     ("sweep", &["random", "scenario", "monte_carlo"]),
     (
         "report",
@@ -39,6 +41,7 @@ const HOST_SIM: &[Arrow] = &[
         &[
             "random",
             "whole_file",
+            "map_file",
             "world",
             "camera",
             "uncertainty",

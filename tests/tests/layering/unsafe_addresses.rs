@@ -4,8 +4,9 @@ use crate::rust_files_below;
 use crate::source::tokens;
 
 /// Where `unsafe` may stand, as beginnings of paths: the matching kernels, the square root, what a board must do with its
-/// registers and link sections, and the C interface through which other languages measure us.
-const ADDRESSES: &[&str] = &["core/src/matching/kernels/", "core/src/math.rs", "boards/", "benches/peers/src/"];
+/// registers and link sections, the C interface through which other languages measure us, and mapped map files.
+const ADDRESSES: &[&str] =
+    &["core/src/matching/kernels/", "core/src/math.rs", "boards/", "benches/peers/src/", "host-sim/src/map_file.rs"];
 
 /// Below [`ADDRESSES`], but shared by boards, so it holds no registers.
 const EXCEPTIONS: &[&str] = &["boards/firmware/", "boards/protocol/"];

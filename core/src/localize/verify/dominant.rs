@@ -18,6 +18,9 @@ const STEEPEST: f32 = 2.0;
 /// Model segments that climb more than this share of their length are not level.
 const LEVEL: f32 = 0.1;
 
+/// Most nodes whose edges tell how a building lies.
+const MOST_NODES: usize = 1024;
+
 /// Lengths of edges by their direction, modulo a quarter turn.
 #[derive(Debug, Clone)]
 pub(super) struct DominantDirection {
@@ -53,10 +56,11 @@ impl DominantDirection {
         }
     }
 
-    /// Adds all level edges of a map.
+    /// Adds all level edges of a map; of one with many nodes, those of some, evenly among all.
     pub(super) fn of_map(database: &TopologicalDatabase<'_>) -> Self {
         let mut direction = Self::NONE;
-        for segment in database.nodes().flat_map(|node| node.segments()) {
+        let step = database.node_count().div_ceil(MOST_NODES);
+        for segment in database.nodes().step_by(step.max(1)).flat_map(|node| node.segments()) {
             let (dx, dy) = (segment.end.x - segment.start.x, segment.end.y - segment.start.y);
             let across = math::length(dx, dy);
             if math::abs(segment.end.z - segment.start.z) <= LEVEL * across {

@@ -4,7 +4,8 @@
 //! ([`distance_planes`]). Per hypothesis, the node's model is projected and looked up in them; how far off it may lie
 //! depends on its depth and on how closely the hypothesis is posed ([`check`]). Evidence adds up over looks **at the
 //! same pose** ([`evidence`]): for every cell of a grid about every node, and, from the segments of all looks, anew for
-//! the best of them posed more closely ([`search`]). The lead of the best place over its rivals decides
+//! the best of them posed more closely ([`search`]). In maps of many nodes a first stage chooses about which of them there is
+//! a grid ([`shortlist`]). The lead of the best place over its rivals decides
 //! ([`judgement`]); least squares give the metric pose ([`pose_fit`]).
 //!
 //! Sums are integers. Projection is plain IEEE single precision in source order, without a function that machines
@@ -33,6 +34,8 @@ mod pose_fit;
 mod responses;
 mod search;
 mod seen_segment;
+mod shortlist;
+mod slots;
 mod spacing;
 mod stop_rule;
 mod verifying;

@@ -9,6 +9,8 @@ use super::judgement::seen_weight;
 use super::kept_looks::KeptLooks;
 use super::lanes::LANES;
 use super::models::Model;
+use super::shortlist::Shortlist;
+use super::slots::Slots;
 use super::spacing::reach_m;
 use super::{Evidence, VerificationConfig};
 use crate::database::TopologicalDatabase;
@@ -55,6 +57,8 @@ pub(super) struct Search<'m> {
     headings: Headings,
     /// Where most level edges of the map run, once somebody asked.
     dominant_rad: Option<f32>,
+    /// Which node each part of the cells belongs to.
+    slots: Slots<'m>,
     cells: &'m mut [CellEvidence],
     ranked: &'m mut [Hypothesis],
     ranked_count: usize,
@@ -67,6 +71,7 @@ impl<'m> Search<'m> {
     pub(super) fn new(
         config: &VerificationConfig,
         database: &TopologicalDatabase<'_>,
+        slots: Slots<'m>,
         (cells, ranked, refined, children): SearchMemory<'m>,
     ) -> Self {
         let mut search = Self {
@@ -74,6 +79,7 @@ impl<'m> Search<'m> {
             cell_m: reach_m(database) / f32::from(config.cells_per_side / 2),
             headings: Headings::about_compass(0.0, 1),
             dominant_rad: None,
+            slots,
             cells,
             ranked,
             ranked_count: 0,
@@ -87,6 +93,7 @@ impl<'m> Search<'m> {
 
     /// Forgets all evidence.
     pub(super) fn clear(&mut self) {
+        self.slots.clear();
         self.cells.fill(CellEvidence::default());
         (self.ranked_count, self.refined_count) = (0, 0);
     }
@@ -101,25 +108,46 @@ impl<'m> Search<'m> {
         &self.ranked[..self.ranked_count]
     }
 
-    /// Takes the last of `looks` into account.
+    /// The nodes that have a grid, where a first stage chooses them.
+    pub(super) const fn slots(&self) -> &Slots<'m> {
+        &self.slots
+    }
+
+    /// Takes the last of `looks` into account; of maps that have one, the shortlist tells about which nodes.
     pub(super) fn look(
         &mut self,
         database: &TopologicalDatabase<'_>,
         checker: &mut Checker<'_>,
         looks: &KeptLooks<'_>,
+        shortlist: Option<&mut Shortlist<'_>>,
     ) {
         let Some(last) = looks.count().checked_sub(1) else { return };
         let headings = self.headings_for(database, looks);
-        if last > 0 && headings.is_like(&self.headings) {
-            self.check_grid(last, database, checker, looks);
-        } else {
+        let changed = last == 0 || !headings.is_like(&self.headings);
+        if changed {
             // The first look; or more looks tell better how the building lies, and all is to be checked anew.
             self.headings = headings;
             self.cells.fill(CellEvidence::default());
-            for look in 0..=last {
+            self.slots.uncover();
+        }
+        if let Some(shortlist) = shortlist {
+            let poses = usize::from(self.config.headings) * self.config.cells_per_node();
+            let (kept, cells) = (&self.refined[..self.refined_count], &mut *self.cells);
+            shortlist.choose(&mut self.slots, (looks, &self.headings, changed), kept, |slot| {
+                cells[slot * poses..][..poses].fill(CellEvidence::default());
+            });
+        }
+        // Nodes that were just chosen catch up with the looks before.
+        let first = if changed || self.slots.are_chosen() { 0 } else { last };
+        for look in first..=last {
+            if changed || look == last {
+                self.check_grid(look, database, checker, looks);
+                self.refute(looks);
+            } else if self.slots.lack(look) {
                 self.check_grid(look, database, checker, looks);
             }
         }
+        self.slots.cover(last);
         self.refined_count = self.worth_refining(looks);
         self.refined[..self.refined_count].copy_from_slice(&self.ranked[..self.refined_count]);
         let [coarse, close] = &STAGES;
@@ -183,9 +211,10 @@ impl<'m> Search<'m> {
         let cell_m = self.cell_m;
         let offset_of = |index: i32| [(index % side - half) as f32 * cell_m, (index / side - half) as f32 * cell_m];
         self.ranked_count = 0;
-        for (node, cells) in
-            database.nodes().zip(self.cells.chunks_exact_mut(usize::from(self.config.headings) * per_heading))
-        {
+        let per_node = usize::from(self.config.headings) * per_heading;
+        for (slot, cells) in self.cells.chunks_exact_mut(per_node).enumerate() {
+            let lacking = self.slots.node_lacking(slot, look);
+            let Some(node) = lacking.and_then(|id| database.node(id)) else { continue };
             let none = Hypothesis::new(node.id(), [0.0; 2], 0.0);
             let (mut best, mut count) = ([none; VerificationConfig::PER_NODE], 0);
             for (&heading_error_rad, cells) in headings.errors_rad().iter().zip(cells.chunks_exact_mut(per_heading)) {
@@ -224,9 +253,12 @@ impl<'m> Search<'m> {
             self.ranked[self.ranked_count..][..count].copy_from_slice(&best[..count]);
             self.ranked_count += count;
         }
-        let ranked = &mut self.ranked[..self.ranked_count];
-        ranked.sort_unstable_by(Hypothesis::rank);
-        if let Some(best) = ranked.first() {
+        self.ranked[..self.ranked_count].sort_unstable_by(Hypothesis::rank);
+    }
+
+    /// Gives cells up that are far behind the best.
+    fn refute(&mut self, looks: &KeptLooks<'_>) {
+        if let Some(best) = self.ranked[..self.ranked_count].first() {
             let floor_q20 = refutation_floor_q20(best.score_q20, looks.seen_q4());
             for cell in self.cells.iter_mut() {
                 cell.refute_below(floor_q20, looks.seen_q4());

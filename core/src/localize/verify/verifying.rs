@@ -9,10 +9,14 @@ use super::moves::Moves;
 use super::next_look::{most_telling_move, most_telling_turn};
 use super::pose_fit::fit;
 use super::search::{Search, agreement_of_look};
+use super::shortlist::Shortlist;
+use super::slots::Slots;
 use super::stop_rule::{Looked, StopRule};
 use super::{NextLook, VerificationConfig};
 use crate::database::{NodeId, TopologicalDatabase};
 use crate::geometry::{Angle, Heading, Point2};
+use crate::localize::extent::Extent;
+use crate::localize::first_stage::FirstStage;
 use crate::localize::segment_filter::SegmentFilter;
 use crate::localize::{
     CandidateSet, Decision, Localized, LocalizerConfig, Look, ObserveError, PoseEstimate, StartError, UnknownReason,
@@ -33,6 +37,7 @@ pub(in crate::localize) struct VerifyingLocalizer<'m> {
     stop_rule: StopRule,
     checker: Checker<'m>,
     looks: KeptLooks<'m>,
+    shortlist: Option<Shortlist<'m>>,
     search: Search<'m>,
     candidates: CandidateSet<'m>,
     is_finished: bool,
@@ -47,8 +52,13 @@ impl<'m> VerifyingLocalizer<'m> {
         memory: &'m mut [u64],
     ) -> Result<Self, StartError> {
         let config = config.checked().map_err(StartError::Config)?;
-        let memory =
-            Memory::divide(memory, &config, verification, database.node_count()).map_err(StartError::Memory)?;
+        let extent = Extent::of(&config, &database);
+        let memory = Memory::divide(memory, &config, verification, extent).map_err(StartError::Memory)?;
+        let index = database.index().filter(|_| extent.has_first_stage());
+        let shortlist = index.map(|index| {
+            let stage = FirstStage::new(*index, database.rig().camera, memory.similarities);
+            Shortlist::new(stage, memory.codes, memory.chosen)
+        });
         let search_memory = (memory.cells, memory.ranked, memory.refined, memory.children);
         Ok(Self {
             database,
@@ -58,7 +68,8 @@ impl<'m> VerifyingLocalizer<'m> {
             stop_rule: StopRule::new(verification.confidence, database.self_agreement()),
             checker: Checker::new(database.rig(), SegmentFilter::new(&config), memory.planes, memory.view),
             looks: KeptLooks::new(memory.poses, memory.segments, config.max_segments),
-            search: Search::new(verification, &database, search_memory),
+            shortlist,
+            search: Search::new(verification, &database, Slots::new(memory.slots), search_memory),
             candidates: CandidateSet::new(memory.node_scores),
             is_finished: false,
         })
@@ -75,13 +86,16 @@ impl<'m> VerifyingLocalizer<'m> {
         let (filter, frame) = (*self.checker.filter(), *self.checker.frame());
         self.looks.push((look.heading, look.motion_since_last), look.scene.segments(), &filter, &frame);
         self.moves.look(&self.looks);
-        self.search.look(&self.database, &mut self.checker, &self.looks);
+        if let Some(shortlist) = &mut self.shortlist {
+            shortlist.keep(self.looks.count() - 1, look.scene.segments());
+        }
+        self.search.look(&self.database, &mut self.checker, &self.looks, self.shortlist.as_mut());
         let Self { search, candidates, .. } = self;
-        candidates.replace(|node| {
-            let of_node = |hypothesis: &&Hypothesis| hypothesis.node() == node;
-            let scores = search.places().iter().chain(search.ranked()).filter(of_node);
-            scores.map(|hypothesis| i64::from(hypothesis.score_q20) << 10).max().unwrap_or(0)
-        });
+        let score = |hypothesis: &Hypothesis| (hypothesis.node(), i64::from(hypothesis.score_q20) << 10);
+        candidates.replace(search.places().iter().chain(search.ranked()).map(score));
+        if search.slots().are_chosen() {
+            candidates.restrict(search.slots().nodes());
+        }
         let decision = self.decide();
         self.is_finished = !matches!(decision, Decision::LookAgain { .. });
         Ok(decision)
@@ -91,6 +105,7 @@ impl<'m> VerifyingLocalizer<'m> {
     pub(in crate::localize) fn reset(&mut self) {
         self.moves = Moves::default();
         self.looks.clear();
+        self.shortlist.iter_mut().for_each(Shortlist::clear);
         self.checker.forget();
         self.search.clear();
         self.candidates.reset();
