@@ -239,7 +239,7 @@ fn a_robot_that_sees_nothing_is_told_so_and_may_start_again() {
     for _attempt in 0..2 {
         for degrees in [0.0, 30.0] {
             let decision = localizer.observe(&look(&[], degrees)).expect("a heading is given");
-            assert_eq!(decision, Decision::LookAgain { turn: config.turn });
+            assert_eq!(decision, Decision::LookAgain { turn: config.turn, step_m: 0.0 });
         }
         let decision = localizer.observe(&look(&[], 60.0)).expect("a heading is given");
         assert_eq!(decision, Decision::Unknown { reason: UnknownReason::SceneTooPoor });
@@ -258,7 +258,7 @@ fn a_blank_first_look_does_not_favor_the_first_node() {
     let mut memory = vec![0; Localizer::memory_len(&config, 4)];
     let mut localizer = Localizer::new(database, &config, &mut memory).expect("memory of the length asked for");
     let blank = localizer.observe(&look(&[], 30.0)).expect("a heading is given");
-    assert_eq!(blank, Decision::LookAgain { turn: config.turn });
+    assert_eq!(blank, Decision::LookAgain { turn: config.turn, step_m: 0.0 });
     let decision = localizer.observe(&look(&scene, 60.0)).expect("a heading is given");
     assert!(matches!(decision, Decision::Localized(localized) if localized.node.0 == 2), "{decision:?}");
 }

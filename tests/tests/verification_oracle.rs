@@ -63,15 +63,17 @@ fn attempt(map: &[u8], position: Point2, (start_deg, bias_deg, spread_deg): (f32
     let database = TopologicalDatabase::open(map).expect("just written");
     let mut memory = vec![0; Localizer::memory_len(&CONFIG, database.node_count())];
     let mut localizer = Localizer::new(database, &CONFIG, &mut memory).expect("memory of the length asked for");
-    let mut motion = None;
-    for look in 0..u8::try_from(CONFIG.max_looks).expect("a few looks") {
-        let degrees = start_deg + 60.0 * f32::from(look);
+    let (mut motion, mut degrees) = (None, start_deg);
+    for _look in 0..CONFIG.max_looks {
         let scene = all_seeing_scene(&world, &RIG, position, heading(degrees));
         let compass =
             HeadingPrior { mean: heading(degrees + bias_deg), standard_deviation: Angle::from_degrees(spread_deg) };
         let look = Look { heading: Some(compass), motion_since_last: motion, scene: Scene::new(&scene) };
         match localizer.observe(&look).expect("a heading is given") {
-            Decision::LookAgain { turn } => motion = Some(Motion::exact_turn(turn)),
+            Decision::LookAgain { turn, .. } => {
+                motion = Some(Motion::exact_turn(turn));
+                degrees += turn.degrees();
+            }
             last => return last,
         }
     }

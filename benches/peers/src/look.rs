@@ -54,7 +54,7 @@ impl OfficeLook {
         let replay = Replay::new(&site, &setting, TRIAL, None).expect("the map can be learned");
         let mut first_look: Option<(Vec<Segment2>, Heading)> = None;
         let watch = |event: &LookEvent<'_>| {
-            first_look.get_or_insert_with(|| (event.scene.to_vec(), event.heading));
+            first_look.get_or_insert_with(|| (event.scene.to_vec(), event.pose.heading));
         };
         replay.run(watch).expect("the map opens");
         let (segments, heading) = first_look.expect("a trial has a look");

@@ -5,6 +5,7 @@
 //! | `histogram_pair` | one scene histogram against one view histogram, every one of 100 against every one of 96, with nothing left out; the mean |
 //! | `scene_histograms_100` | the histograms of a scene of 100 segments, ready for matching |
 //! | `paper_look_72` | one whole look of the paper's localizer over 72 nodes |
+//! | `verified_look_72` | the same look of the verifying localizer |
 //!
 //! The map of 72 nodes has the golden map's ten again and again. The looks are the first of the golden attempts in which
 //! about as many segments are matched as in a mean look at the office, 112.
@@ -88,7 +89,15 @@ pub fn count_instructions(
     writeln!(out, "budget histogram_pair {pair}")?;
     let length = repeat_nodes(map, larger_map)?;
     let database = TopologicalDatabase::open(&larger_map[..length]).map_err(|_| fmt::Error)?;
-    let mut localizer = Localizer::new(database, &CONFIG, memory).map_err(|_| fmt::Error)?;
+    for (name, config) in [("paper", CONFIG), ("verified", LocalizerConfig::edgeloc())] {
+        let mut localizer = Localizer::new(database, &config, memory).map_err(|_| fmt::Error)?;
+        let instructions = count_look(&mut localizer, &scene, stopwatch)?;
+        writeln!(out, "budget {name}_look_72 {instructions}")?;
+    }
+    Ok(())
+}
+
+fn count_look(localizer: &mut Localizer<'_>, scene: &Seen, stopwatch: &mut impl Stopwatch) -> Result<u64, fmt::Error> {
     let look = Look {
         heading: Some(scene.heading),
         motion_since_last: None,
@@ -99,7 +108,7 @@ pub fn count_instructions(
     if !matches!(answer, Some(Ok(_))) {
         return Err(fmt::Error);
     }
-    writeln!(out, "budget paper_look_72 {instructions}")
+    Ok(instructions)
 }
 
 /// The next look with enough segments, but not too many.
@@ -116,7 +125,7 @@ fn next_seen(reader: &mut LooksReader<'_>) -> Option<Seen> {
             let lines = lines_to_match(segments.iter().copied(), &CONFIG, &mut storage);
             if found.is_none() && (SCENE..SCENE + 25).contains(&lines.len()) {
                 let lines = Vec::from_slice(&lines[..SCENE]).ok()?;
-                found = Some(Seen { heading: HeadingPrior::exact(look.heading?), segments, lines });
+                found = Some(Seen { heading: look.heading?, segments, lines });
             }
         }
         if found.is_some() {

@@ -4,10 +4,10 @@
 //!
 //! | part | fields in order |
 //! |---|---|
-//! | header | 8 bytes `"edgelook"`; u16 version, 1; u16 number of configurations; u32 number of attempts |
-//! | configuration | u16 distance bins, u16 angle bins, f32 greatest distance \[px\]; u8 signed, u8 uses polarity, u8 interpolates the angle, u8 zero; f32 score margin; f32 turn \[rad\]; u16 most looks, u16 most segments; f32 least length \[px\]; f32 horizontal exclusion \[rad\] |
+//! | header | 8 bytes `"edgelook"`; u16 version, 2; u16 number of configurations; u32 number of attempts |
+//! | configuration | u16 distance bins, u16 angle bins, f32 greatest distance \[px\]; u8 signed, u8 uses polarity, u8 interpolates the angle, u8 zero; f32 score margin; f32 turn \[rad\]; u16 most looks, u16 most segments; f32 least length \[px\]; f32 horizontal exclusion \[rad\]; u8 verifies, u8 looks next where predicted; u16 cells per side, u16 headings, u16 refined, u16 finalists, u16 moves; f32 confidence, f32 move \[m\]; zeros where nothing is verified |
 //! | attempt | u8 length of its name, the name in UTF-8; u16 index of its configuration; u16 number of looks; u32 words of memory, 0 for as many as it takes; its looks |
-//! | look | u8 whether there is a heading, f32 heading \[rad\]; u16 number of segments; the segments |
+//! | look | u8 whether there is a heading, f32 heading and f32 its standard deviation \[rad\]; u8 whether there is odometry, f32 turn \[rad\] and f32 way straight ahead after it \[m\]; u16 number of segments; the segments |
 //! | segment | f32 start x and y, f32 end x and y \[px\]; u8 1 where the brighter side lies to the right |
 //!
 //! Configurations need not be legal: that they are refused is an expectation like any other.
@@ -15,15 +15,15 @@
 use core::fmt;
 
 use edgeloc::geometry::{Angle, Heading, Point2, Polarity, Segment2, SegmentError};
-use edgeloc::localize::LocalizerConfig;
+use edgeloc::localize::{HeadingPrior, LocalizerConfig, Motion, NextLook, VerificationConfig};
 use edgeloc::pgh::{DistanceKind, PghShape};
 
 /// The first eight bytes.
 pub const MAGIC: [u8; 8] = *b"edgelook";
 /// The version this crate reads.
-pub const VERSION: u16 = 1;
+pub const VERSION: u16 = 2;
 /// Length of a configuration.
-pub const CONFIG_LEN: usize = 32;
+pub const CONFIG_LEN: usize = 52;
 /// Length of a segment.
 pub const SEGMENT_LEN: usize = 17;
 
@@ -52,7 +52,9 @@ pub struct Attempt<'a> {
 #[derive(Debug, Clone, Copy)]
 pub struct GoldenLook<'a> {
     /// The measured heading, if there is a compass.
-    pub heading: Option<Heading>,
+    pub heading: Option<HeadingPrior>,
+    /// What odometry tells of the way from the look before, if there is odometry.
+    pub motion: Option<Motion>,
     segments: &'a [u8],
 }
 
@@ -104,13 +106,19 @@ impl<'a> LooksReader<'a> {
     /// When the bytes end or hold no heading where one is announced.
     pub fn look(&mut self) -> Result<GoldenLook<'a>, LooksError> {
         let has_heading = self.cursor.u8()? != 0;
-        let radians = self.cursor.f32()?;
+        let (radians, spread_rad) = (self.cursor.f32()?, self.cursor.f32()?);
         let heading = match has_heading {
-            true => Some(Heading::new(Angle::from_radians(radians)).ok_or(LooksError::Heading)?),
+            true => Some(HeadingPrior {
+                mean: Heading::new(Angle::from_radians(radians)).ok_or(LooksError::Heading)?,
+                standard_deviation: Angle::from_radians(spread_rad),
+            }),
             false => None,
         };
+        let has_odometry = self.cursor.u8()? != 0;
+        let (turn, ahead_m) = (Angle::from_radians(self.cursor.f32()?), self.cursor.f32()?);
+        let motion = has_odometry.then(|| Motion::exact(turn, ahead_m));
         let segment_count = usize::from(self.cursor.u16()?);
-        Ok(GoldenLook { heading, segments: self.cursor.take(segment_count * SEGMENT_LEN)? })
+        Ok(GoldenLook { heading, motion, segments: self.cursor.take(segment_count * SEGMENT_LEN)? })
     }
 
     /// Whether every byte was read.
@@ -138,7 +146,7 @@ fn read_config(cursor: &mut Cursor<'_>) -> Result<LocalizerConfig, LooksError> {
     let [is_signed, uses_polarity, interpolates_angle, _] = cursor.array()?.map(|flag| flag != 0);
     let distance = if is_signed { DistanceKind::Signed } else { DistanceKind::Unsigned };
     let shape = PghShape { distance_bins, angle_bins, max_distance_px, distance, uses_polarity, interpolates_angle };
-    Ok(LocalizerConfig {
+    let config = LocalizerConfig {
         shape,
         score_margin: cursor.f32()?,
         turn: Angle::from_radians(cursor.f32()?),
@@ -148,7 +156,19 @@ fn read_config(cursor: &mut Cursor<'_>) -> Result<LocalizerConfig, LooksError> {
         horizontal_exclusion: Angle::from_radians(cursor.f32()?),
         shortlist: LocalizerConfig::paper().shortlist,
         verification: None,
-    })
+    };
+    let [verifies, is_predicted] = cursor.array()?.map(|flag| flag != 0);
+    let verification = VerificationConfig {
+        next_look: if is_predicted { NextLook::Predicted } else { NextLook::Fixed },
+        cells_per_side: cursor.u16()?,
+        headings: cursor.u16()?,
+        refined: cursor.u16()?,
+        finalists: cursor.u16()?,
+        moves: cursor.u16()?,
+        confidence: cursor.f32()?,
+        move_m: cursor.f32()?,
+    };
+    Ok(LocalizerConfig { verification: verifies.then_some(verification), ..config })
 }
 
 /// The bytes not yet read.

@@ -7,7 +7,7 @@ use core::fmt::{self, Write};
 
 use edgeloc::database::{OpenError, TopologicalDatabase};
 use edgeloc::geometry::{CapacityError, Scene, SceneBuffer};
-use edgeloc::localize::{Decision, HeadingPrior, Localizer, Look, ObserveError};
+use edgeloc::localize::{Decision, Localizer, Look, ObserveError};
 
 use crate::comparison::{Comparison, Mismatch};
 use crate::looks::{GoldenLook, LooksError, LooksReader};
@@ -19,7 +19,7 @@ pub const SCENE_CAPACITY: usize = 1024;
 pub const MEMORY_WORDS: usize = 1 << 18;
 
 /// Longest line.
-const LINE_CAPACITY: usize = 1024;
+const LINE_CAPACITY: usize = 3072;
 
 type Line = heapless::String<LINE_CAPACITY>;
 
@@ -108,8 +108,7 @@ fn observe(
         }
     }
     let scene: Scene<'_> = buffer.as_scene();
-    let heading = look.heading.map(HeadingPrior::exact);
-    Ok(localizer.observe(&Look { heading, motion_since_last: None, scene }))
+    Ok(localizer.observe(&Look { heading: look.heading, motion_since_last: look.motion, scene }))
 }
 
 /// The answer, the segments that were matched and all scores; a node that dropped out has a minus behind its score.

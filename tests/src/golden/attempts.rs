@@ -1,7 +1,7 @@
 //! Which attempts are golden: every source on and off, several histograms, each kind of decision, each kind of refusal.
 
 use edgeloc::geometry::{Angle, Point2, Polarity, Segment2};
-use edgeloc::localize::LocalizerConfig;
+use edgeloc::localize::{LocalizerConfig, NextLook, VerificationConfig};
 use edgeloc::pgh::{DistanceKind, PghShape};
 use edgeloc_firmware::SCENE_CAPACITY;
 use edgeloc_sim::random::Stream;
@@ -22,6 +22,7 @@ pub(super) fn all(site: &Site) -> Vec<Attempt> {
     list.poor_scenes();
     list.crowded_scenes();
     list.refusals();
+    list.verified();
     list.attempts
 }
 
@@ -153,6 +154,53 @@ impl List<'_> {
         }
     }
 
+    /// The verifying localiser: with compass and odometry of all kinds, near and anywhere, moving, and where nothing is.
+    fn verified(&mut self) {
+        let edgeloc = LocalizerConfig::edgeloc();
+        let with = |change: fn(&mut VerificationConfig)| {
+            let mut verification = VerificationConfig::reference();
+            change(&mut verification);
+            LocalizerConfig { verification: Some(verification), ..edgeloc }
+        };
+        for (name, config, start, count) in [
+            ("near", edgeloc, Start::Near, 2),
+            ("anywhere", edgeloc, Start::Anywhere, 3),
+            ("fixed turns", with(|verification| verification.next_look = NextLook::Fixed), Start::Anywhere, 2),
+            ("never sure, moving", with(|verification| verification.confidence = 100.0), Start::Near, 14),
+        ] {
+            for _ in 0..2 {
+                let looks = self.moving_looks(start, count);
+                self.push(format!("verified, {name}"), config, looks);
+            }
+        }
+        let mut looks = self.moving_looks(Start::Near, 3);
+        for look in &mut looks {
+            look.heading = look.heading.and_then(|heading| heading.turned(Angle::from_degrees(2.5)));
+            look.spread_rad = 0.0875;
+        }
+        self.push("verified, a compass that errs".to_owned(), edgeloc, looks);
+
+        let mut looks = self.moving_looks(Start::Near, 3);
+        looks.iter_mut().for_each(|look| look.heading = None);
+        self.push("verified, no compass".to_owned(), edgeloc, looks.clone());
+        looks.iter_mut().for_each(|look| look.motion = None);
+        self.push("verified, neither compass nor odometry".to_owned(), edgeloc, looks);
+
+        let mut looks = self.moving_looks(Start::Near, 7);
+        looks.iter_mut().for_each(|look| look.motion = None);
+        self.push("verified, no odometry".to_owned(), with(|verification| verification.confidence = 100.0), looks);
+
+        let mut looks = self.moving_looks(Start::Near, 7);
+        looks.iter_mut().for_each(|look| (look.segments, look.motion) = (Vec::new(), None));
+        self.push("verified, empty scenes".to_owned(), edgeloc, looks);
+    }
+
+    /// A robot with odometry that drives 0.6 m after a full turn.
+    fn moving_looks(&self, start: Start, count: u32) -> Vec<GoldenLook> {
+        let way = (LocalizerConfig::edgeloc().turn, count, 0.6);
+        self.site.looks_with_odometry(self.attempts.len() as u64, start, way, &Sources::default())
+    }
+
     fn look_around(&mut self, name: String, config: LocalizerConfig, start: Start, look_count: u32, sources: &Sources) {
         let index = self.attempts.len() as u64;
         let looks = self.site.looks(index, start, config.turn, look_count, sources);
@@ -221,11 +269,11 @@ mod tests {
     #[test]
     fn every_source_of_images_has_its_turn() {
         let settings = source_settings();
-        // The compass tells headings; golden looks have a perfect one. Occlusion only takes away, as lost edges do.
+        // Compass and odometry tell of poses; golden looks have perfect ones. Occlusion only takes away, as lost edges do.
         let of_images = Sources::none()
             .pipeline()
             .iter()
-            .map(|source| !["compass", "occlusion"].contains(&source.facts().key))
+            .map(|source| !["compass", "occlusion", "odometry"].contains(&source.facts().key))
             .collect::<Vec<_>>();
         for (index, is_of_images) in of_images.into_iter().enumerate() {
             let acts = |sources: &Sources| {

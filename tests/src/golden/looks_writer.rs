@@ -1,7 +1,7 @@
 //! Golden looks into bytes: the writing side of [`edgeloc_firmware::looks`].
 
-use edgeloc::geometry::{Heading, Polarity, Segment2};
-use edgeloc::localize::LocalizerConfig;
+use edgeloc::geometry::{Angle, Heading, Polarity, Segment2};
+use edgeloc::localize::{LocalizerConfig, NextLook, VerificationConfig};
 use edgeloc::pgh::DistanceKind;
 use edgeloc_firmware::looks::{MAGIC, VERSION};
 
@@ -20,6 +20,10 @@ pub(super) struct Attempt {
 #[derive(Debug, Clone)]
 pub(super) struct GoldenLook {
     pub(super) heading: Option<Heading>,
+    /// Standard deviation of the heading \[rad\].
+    pub(super) spread_rad: f32,
+    /// The turn made since the look before and the way straight ahead after it \[m\], if there is odometry.
+    pub(super) motion: Option<(Angle, f32)>,
     pub(super) segments: Vec<Segment2>,
 }
 
@@ -62,11 +66,35 @@ fn write_config(bytes: &mut Vec<u8>, config: &LocalizerConfig) {
     bytes.extend(config.max_segments.to_le_bytes());
     bytes.extend(config.min_length_px.to_le_bytes());
     bytes.extend(config.horizontal_exclusion.radians().to_le_bytes());
+    let verifies = config.verification.is_some();
+    let zeros = VerificationConfig {
+        cells_per_side: 0,
+        headings: 0,
+        confidence: 0.0,
+        refined: 0,
+        finalists: 0,
+        next_look: NextLook::Fixed,
+        moves: 0,
+        move_m: 0.0,
+    };
+    let verification = config.verification.unwrap_or(zeros);
+    bytes.extend([verifies, verification.next_look == NextLook::Predicted].map(u8::from));
+    let VerificationConfig { cells_per_side, headings, refined, finalists, moves, .. } = verification;
+    for number in [cells_per_side, headings, refined, finalists, moves] {
+        bytes.extend(number.to_le_bytes());
+    }
+    bytes.extend(verification.confidence.to_le_bytes());
+    bytes.extend(verification.move_m.to_le_bytes());
 }
 
 fn write_look(bytes: &mut Vec<u8>, look: &GoldenLook) {
     bytes.push(u8::from(look.heading.is_some()));
     bytes.extend(look.heading.map_or(0.0, |heading| heading.angle().radians()).to_le_bytes());
+    bytes.extend(look.spread_rad.to_le_bytes());
+    let (turn, ahead_m) = look.motion.unwrap_or((Angle::from_radians(0.0), 0.0));
+    bytes.push(u8::from(look.motion.is_some()));
+    bytes.extend(turn.radians().to_le_bytes());
+    bytes.extend(ahead_m.to_le_bytes());
     bytes.extend(count(look.segments.len()).to_le_bytes());
     for segment in &look.segments {
         for coordinate in [segment.start().x, segment.start().y, segment.end().x, segment.end().y] {
@@ -83,7 +111,8 @@ fn count(value: usize) -> u16 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use edgeloc::geometry::{Angle, Point2};
+    use edgeloc::geometry::Point2;
+    use edgeloc::localize::{HeadingPrior, Motion};
     use edgeloc_firmware::looks::LooksReader;
 
     #[test]
@@ -93,11 +122,14 @@ mod tests {
             Segment2::new(Point2::new(1.5, -2.25), Point2::new(640.125, 33.0), polarity).expect("a good segment")
         };
         let segments = vec![segment(Polarity::LeftBrighter), segment(Polarity::RightBrighter)];
-        let looks =
-            vec![GoldenLook { heading, segments: segments.clone() }, GoldenLook { heading: None, segments: vec![] }];
+        let turn = Angle::from_degrees(50.0);
+        let first = GoldenLook { heading, spread_rad: 0.125, motion: None, segments: segments.clone() };
+        let second = GoldenLook { heading: None, spread_rad: 0.0, motion: Some((turn, 0.75)), segments: vec![] };
+        let looks = vec![first, second];
         let mut config = LocalizerConfig::paper();
         config.shape.distance = DistanceKind::Unsigned;
         config.turn = Angle::from_degrees(-45.0);
+        config.verification = LocalizerConfig::edgeloc().verification;
         let plain = Attempt { name: "plain".to_owned(), config: LocalizerConfig::paper(), memory_words: None, looks };
         let tight = Attempt { name: "tight".to_owned(), config, memory_words: Some(7), looks: Vec::new() };
 
@@ -113,9 +145,12 @@ mod tests {
             }
             assert_eq!((attempt.name, attempt.look_count, attempt.memory_words), ("plain", 2, None));
             let look = reader.look().expect("two looks");
-            assert_eq!(look.heading, heading);
+            let standard_deviation = Angle::from_radians(0.125);
+            assert_eq!(look.heading, heading.map(|mean| HeadingPrior { mean, standard_deviation }));
+            assert_eq!(look.motion, None);
             assert_eq!(look.segments().collect::<Result<Vec<_>, _>>().as_ref(), Ok(&segments));
-            assert_eq!(reader.look().expect("two looks").heading, None);
+            let look = reader.look().expect("two looks");
+            assert_eq!((look.heading, look.motion), (None, Some(Motion::exact(turn, 0.75))));
         }
         assert!(reader.is_at_end());
     }

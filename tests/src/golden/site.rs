@@ -1,6 +1,7 @@
 //! The place of the golden attempts: the generated office, a few nodes in it, and a robot put down and turned there.
 
 use edgeloc::geometry::{Angle, Heading, Point2, Point3, StereoRig};
+use edgeloc::math;
 use edgeloc_sim::camera::{left_segments, observe};
 use edgeloc_sim::learning::{self, CalibratedRig, NodeViews, place_nodes};
 use edgeloc_sim::random::Stream;
@@ -68,8 +69,8 @@ impl Site {
         learning::learn(&robot, &views, &Sources::default(), SEED, 0).expect("an office fits the format")
     }
 
-    /// What a robot sees in `count` looks, turning by `turn` between them, with a perfect compass; `index` draws the
-    /// start and the noise.
+    /// What a robot sees in `count` looks, turning by `turn` between them, with a perfect compass and without odometry;
+    /// `index` draws the start and the noise.
     pub(super) fn looks(
         &self,
         index: u64,
@@ -78,18 +79,38 @@ impl Site {
         count: u32,
         sources: &Sources,
     ) -> Vec<GoldenLook> {
+        let mut looks = self.looks_with_odometry(index, start, (turn, count, 0.0), sources);
+        looks.iter_mut().for_each(|look| look.motion = None);
+        looks
+    }
+
+    /// The same with perfect odometry, and before every seventh look a way of `ahead_m` straight ahead after the turn.
+    pub(super) fn looks_with_odometry(
+        &self,
+        index: u64,
+        start: Start,
+        (turn, count, ahead_m): (Angle, u32, f32),
+        sources: &Sources,
+    ) -> Vec<GoldenLook> {
         let mut stream = Stream::new(SEED, "start", index, start as u64);
-        let position = self.draw_start(start, &mut stream);
+        let mut position = self.draw_start(start, &mut stream);
         let first_turn = Angle::from_radians(stream.uniform(-3.0, 3.0) as f32);
         let mut heading = Heading::new(first_turn).expect("less than half a turn");
-        let eye = Point3::new(position.x, position.y, self.rig.camera_height_m);
-        let mut visibility = ViewpointVisibility::new(&self.world, &self.occluders, eye);
+        let mut motion = None;
         let mut looks = Vec::new();
         for look in 0..count {
+            let eye = Point3::new(position.x, position.y, self.rig.camera_height_m);
+            let mut visibility = ViewpointVisibility::new(&self.world, &self.occluders, eye);
             let mut observation = observe(&self.rig, &mut visibility, heading);
             sources.apply(&mut observation, &NoiseKey::look(SEED, index, look));
-            looks.push(GoldenLook { heading: Some(heading), segments: left_segments(&observation) });
+            let segments = left_segments(&observation);
+            looks.push(GoldenLook { heading: Some(heading), spread_rad: 0.0, motion, segments });
             heading = heading.turned(turn).expect("a golden turn is finite");
+            let is_moved = look % 6 == 5;
+            let way_m = if is_moved { self.free_space.free_way_m(position, heading, ahead_m) } else { 0.0 };
+            let (sin, cos) = math::sin_cos(heading.angle().radians());
+            position = Point2::new(position.x + way_m * cos, position.y + way_m * sin);
+            motion = Some((turn, way_m));
         }
         looks
     }

@@ -32,13 +32,14 @@ pub(super) struct LookPose {
 impl LookPose {
     /// Whether it was taken after a move.
     pub(super) fn is_elsewhere(&self) -> bool {
-        self.way_m != [0.0; 2]
+        let [x, y] = self.way_m;
+        x != 0.0 || y != 0.0
     }
 
     /// The way made since the first look if the compass erred by that much there, axes of the world \[m\].
     pub(super) fn way_m_if(&self, heading_error_rad: f32) -> [f32; 2] {
         let [x, y] = self.way_m;
-        if heading_error_rad == 0.0 || !self.is_elsewhere() {
+        if !self.is_elsewhere() {
             return self.way_m;
         }
         let (sin, cos) = math::sin_cos(heading_error_rad);
