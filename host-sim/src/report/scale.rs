@@ -211,7 +211,8 @@ pub fn scale_chart(lines: &[ScaleLine]) -> SVG {
                 words,
             ))
         });
-        chart.append(trace(series, name, (rates.x(0.02 + 0.28 * series as f64), 18.0), marks.collect()));
+        let label_at = (rates.x([0.02, 0.18, 0.68][series]), 18.0);
+        chart.append(trace(series, name, label_at, marks.collect()));
     }
     let time_series: [Series<f64>; 3] = [
         ("first look, median", |line| line.first_look_ms_median),

@@ -112,9 +112,11 @@ mod tests {
         let kept = [Hypothesis::new(NodeId(8), [0.0; 2], 0.0)];
         slots.choose(&[1, 5, 9], &kept, |slot| renewed.push(slot));
         assert_eq!((nodes(&slots), &*renewed), ([1, 5, 8, 9].to_vec(), &[0, 3][..]));
-        let lacking = |look: usize| (0..4).filter_map(|slot| slots.node_lacking(slot, look)).map(|node| node.0);
-        assert_eq!(lacking(0).collect::<Vec<_>>(), [1, 9]);
-        assert_eq!(lacking(1).collect::<Vec<_>>(), [1, 5, 8, 9]);
+        let lacking = |look: usize| -> Vec<u32> {
+            (0..4).filter_map(|slot| slots.node_lacking(slot, look)).map(|node| node.0).collect()
+        };
+        assert_eq!(lacking(0), [1, 9]);
+        assert_eq!(lacking(1), [1, 5, 8, 9]);
     }
 
     #[test]
