@@ -14,8 +14,9 @@
 //!                                                 matching::bhattacharyya -> ViewScore
 //!                                                          |
 //!                                 localize::CandidateSet (accumulate per node, B_max - B_th / i)
+//!                                 or, instead of both, poses about every node checked against all looks
 //!                                                          v
-//!                        Decision::{Localized, LookAgain { turn }, Unknown { reason }}
+//!                        Decision::{Localized, LookAgain { turn, step_m }, Unknown { reason }}
 //! ```
 //!
 //! | module | what it holds |

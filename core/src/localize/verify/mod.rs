@@ -5,8 +5,9 @@
 //! depends on its depth and on how closely the hypothesis is posed ([`check`]). Evidence adds up over looks **at the
 //! same pose** ([`evidence`]): for every cell of a grid about every node, and, from the segments of all looks, anew for
 //! the best of them posed more closely ([`search`]). In maps of many nodes a first stage chooses about which of them there is
-//! a grid ([`shortlist`]). The lead of the best place over its rivals decides
-//! ([`judgement`]); least squares give the metric pose ([`pose_fit`]).
+//! a grid ([`shortlist`]). The lead of the best place over its rivals ([`judgement`]) and its agreement with what was seen
+//! decide ([`stop_rule`]). Until they do, the robot looks where its rivals are predicted to look different, and when it has
+//! looked all around it moves a little ([`next_look`]). Least squares give the metric pose ([`pose_fit`]).
 //!
 //! Sums are integers. Projection is plain IEEE single precision in source order, without a function that machines
 //! round differently.
