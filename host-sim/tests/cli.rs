@@ -246,7 +246,7 @@ fn every_uncertainty_source_is_listed_as_the_scenario_sets_it() {
         let magnitude = if key == "edge_detection_loss" { 0.25.into() } else { source["default"]["magnitude"].clone() };
         assert_eq!(set("magnitude"), Some(magnitude), "{key}");
         assert_eq!(source["acts_in"] == "calibration", key.starts_with("corner_"), "{key}");
-        let is_on = key == "polarity_flips" || source["default"]["enabled"] == true;
+        let is_on = ["polarity_flips", "odometry"].contains(&key) || source["default"]["enabled"] == true;
         assert_eq!(set("enabled"), Some(is_on.into()), "{key}");
     }
 }

@@ -52,7 +52,7 @@ pub struct LookExplanation {
     pub scene: Vec<Segment2>,
     /// The true pose.
     #[serde(skip)]
-    pub pose_true: TruePose,
+    pub true_pose: TruePose,
     /// What the compass told of it; the truth without a compass.
     #[serde(skip)]
     pub compass: Heading,
@@ -156,7 +156,7 @@ impl LookExplanation {
             probability,
             rivals,
             scene: event.scene.to_vec(),
-            pose_true: event.pose,
+            true_pose: event.pose,
             compass: event.compass.map_or(event.pose.heading, |told| told.mean),
             compass_spread: event.compass.map_or(Angle::from_degrees(180.0), |told| told.standard_deviation),
         }
@@ -269,7 +269,7 @@ impl LookExplanation {
                 marks.append(Circle::new().set("class", "truth").set("cx", x).set("cy", y).set("r", 14));
             }
         }
-        let place = self.pose_true.position;
+        let place = self.true_pose.position;
         plan.canvas().add(plan.background()).add(sight(plan, place, self.heading_deg)).add(marks)
     }
 

@@ -59,7 +59,7 @@ pub(super) struct PlaceEvidence {
 /// The heading at a look, by the compass at the first look and the turns since.
 pub(super) fn told_heading(looks: &[LookExplanation], look: &LookExplanation, error: Angle) -> Heading {
     let Some(first) = looks.first() else { return look.compass };
-    let turned = look.pose_true.heading.angle().radians() - first.pose_true.heading.angle().radians();
+    let turned = look.true_pose.heading.angle().radians() - first.true_pose.heading.angle().radians();
     first.compass.turned(Angle::from_radians(turned + error.radians())).unwrap_or(look.compass)
 }
 
@@ -84,7 +84,7 @@ pub(super) fn place_evidence(
     let mut checks = Checks { checks, cell_m, spread_rad: first.compass_spread.radians() };
     let mut grid = grid(&nodes, reach_m, cell_m);
     let own_error =
-        Angle::from_radians(first.pose_true.heading.angle().radians() - first.compass.angle().radians()).wrapped();
+        Angle::from_radians(first.true_pose.heading.angle().radians() - first.compass.angle().radians()).wrapped();
     let (mut seen_q4, mut segments, mut found) = (0, 0, Vec::new());
     for (index, look) in looks.iter().enumerate() {
         seen_q4 += seen_length_q4(look, map, config);
@@ -119,8 +119,8 @@ pub(super) fn place_evidence(
 
 /// The way made from the first look to another, as the compass at the first would have it.
 fn told_way(first: &LookExplanation, look: &LookExplanation) -> Point2 {
-    let (from, to) = (first.pose_true.position, look.pose_true.position);
-    let error_rad = first.compass.angle().radians() - first.pose_true.heading.angle().radians();
+    let (from, to) = (first.true_pose.position, look.true_pose.position);
+    let error_rad = first.compass.angle().radians() - first.true_pose.heading.angle().radians();
     turned(Point2::new(to.x - from.x, to.y - from.y), error_rad)
 }
 

@@ -161,7 +161,7 @@ pub(crate) fn look_at_posts() -> LookExplanation {
         probability: None,
         rivals: Vec::new(),
         scene,
-        pose_true: TruePose { position: Point2::default(), heading: Heading::default() },
+        true_pose: TruePose { position: Point2::default(), heading: Heading::default() },
         compass: Heading::default(),
         compass_spread: Angle::default(),
     }

@@ -208,6 +208,7 @@ mod tests {
         expected.learning.placement = NodePlacement::Coverage;
         expected.learning.max_segments = 700;
         expected.uncertainty.polarity_flips = PolarityFlips { enabled: true, magnitude: 0.05 };
+        expected.uncertainty.odometry.enabled = true;
         expected.learning.join = true;
         expected.localizer.kind = LocalizerKind::Edgeloc;
         (expected.localizer.turn_deg, expected.localizer.max_looks) = (60.0, 6);

@@ -269,15 +269,15 @@ mod tests {
         table.try_into().expect("legal sources")
     }
 
-    /// What the sources leave of a view, of a look, of the corners of a calibration, of a heading and of a robot.
-    fn effects(
-        sources: &Sources,
-    ) -> (StereoObservation, StereoObservation, Vec<CornerPair>, Option<HeadingPrior>, bool) {
+    /// What the sources leave of a view, of a look, of the corners of a calibration, of a heading, of a motion and of a
+    /// robot.
+    fn effects(sources: &Sources) -> impl PartialEq + use<> {
         let (look_key, mut look, mut corners) = (NoiseKey::look(9, 4, 0), observation(300), corners(300));
         sources.apply(&mut look, &look_key);
         sources.perturb_corners(&mut corners, 9, 0);
         let reading = sources.compass_reading(Heading::default(), &look_key);
-        (applied(sources), look, corners, reading, sources.camera_calibration.acts())
+        let motion = sources.odometry_reading(Angle::from_degrees(60.0), 1.0, &look_key).map(|motion| motion.step_m);
+        (applied(sources), look, corners, reading, motion, sources.camera_calibration.acts())
     }
 
     #[test]

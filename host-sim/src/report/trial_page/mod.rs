@@ -226,8 +226,9 @@ fn effects_table(effects: &[SourceEffect]) -> Markup {
 mod tests {
     use super::*;
     use crate::camera::StereoObservation;
+    use crate::monte_carlo::TruePose;
     use crate::report::{AnsweredPose, sample};
-    use edgeloc::geometry::StereoRig;
+    use edgeloc::geometry::{Heading, StereoRig};
 
     /// The page of a trial of one look at the second place of the made-up map, its nodes' scores those given.
     fn page(config: LocalizerConfig, scores: [f64; 2], answer: Option<AnsweredPose>) -> String {
@@ -238,7 +239,9 @@ mod tests {
         (record.true_x_m, record.true_y_m, record.nearest_node, record.second_nearest_node) = (5.1, 2.1, 1, 0);
         let nodes = scores.map(|score| crate::report::NodeStanding { score, was_candidate: true, is_candidate: true });
         let is_verifying = config.verification.is_some();
-        let look = LookExplanation { nodes: nodes.to_vec(), is_verifying, pose: answer, ..sample::look_at_posts() };
+        let true_pose = TruePose { position: Point2::new(5.1, 2.1), heading: Heading::default() };
+        let nodes = nodes.to_vec();
+        let look = LookExplanation { nodes, is_verifying, pose: answer, true_pose, ..sample::look_at_posts() };
         let blank = || StereoObservation { rig: StereoRig::reference(), features: Vec::new() };
         let images = LookImages { clean: blank(), perturbed: blank(), effects: Vec::new() };
         trial_page(&TrialFacts {

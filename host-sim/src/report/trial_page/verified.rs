@@ -38,7 +38,7 @@ pub(super) fn decision(
                 dt { "possible" }
                 dd { (format!(
                     "{:.1} %: {:.2}, {:.2} m, node {}; {:.2} m from the truth", 100.0 * rival.probability, rival.x_m,
-                    rival.y_m, rival.node, Point2::new(rival.x_m, rival.y_m).distance(look.pose_true.position)
+                    rival.y_m, rival.node, Point2::new(rival.x_m, rival.y_m).distance(look.true_pose.position)
                 )) }
             }
             dt { "what decides" }
@@ -85,7 +85,7 @@ pub(super) fn models(facts: &TrialFacts<'_>, look: &LookExplanation, evidence: &
 }
 
 fn pose_facts(look: &LookExplanation, pose: &AnsweredPose) -> Markup {
-    let truth = look.pose_true.position;
+    let truth = look.true_pose.position;
     let [sd_x, sd_y, sd_heading] = [0, 1, 2].map(|axis| pose.covariance[axis][axis].max(0.0).sqrt());
     let covariance: Vec<String> = pose
         .covariance
@@ -127,7 +127,7 @@ fn places_table(facts: &TrialFacts<'_>, look: &LookExplanation, evidence: &Place
                 td.number { "node " (place.node.0) }
                 td.number { (format!("{:.3}", place.score)) }
                 td.number { @if name == "1" { "–" } @else { (format!("{:.3}", place.behind)) } }
-                td.number { (format!("{:.2} m", place.position.distance(look.pose_true.position))) }
+                td.number { (format!("{:.2} m", place.position.distance(look.true_pose.position))) }
             } } }
         } }
     }
@@ -135,7 +135,7 @@ fn places_table(facts: &TrialFacts<'_>, look: &LookExplanation, evidence: &Place
 
 fn plan(facts: &TrialFacts<'_>, look: &LookExplanation, evidence: &PlaceEvidence) -> SVG {
     let plan = facts.plan;
-    let mut marks = Group::new().add(plan.node_marks()).add(sight(plan, look.pose_true.position, look.heading_deg));
+    let mut marks = Group::new().add(plan.node_marks()).add(sight(plan, look.true_pose.position, look.heading_deg));
     for (index, place) in evidence.places.iter().enumerate().rev() {
         marks.append(place_mark(facts, place, index));
     }
