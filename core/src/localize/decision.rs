@@ -39,11 +39,11 @@ pub struct Localized {
 /// A metric pose with its uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PoseEstimate {
-    /// Position in the world frame \[m\].
+    /// Position at the last look in the world frame \[m\].
     pub position: Point2,
     /// Heading at the last look.
     pub heading: Heading,
-    /// Covariance of (x, y, heading) in m, m and rad.
+    /// Covariance of (x, y, heading) at the last look in m, m and rad.
     pub covariance: [[f32; 3]; 3],
 }
 

@@ -15,7 +15,7 @@ pub(super) const JSON_FIELDS: &str = "\
 record = the trial's line of trials.csv (row, trial, map = draw of the map's noise, true_x_m, true_y_m, \
 true_heading_deg, nearest_node, second_nearest_node, nearest_node_distance_m, outcome, answered_node, answer_distance_m \
 from the true position to it, pose_error_m, heading_error_deg and probability of an answered pose, is_success, \
-is_truth_named by the answer or the rivals, is_near_tie, unknown_kind and rivals where there is no answer, driven_m in exploratory moves, looks, \
+is_truth_named by the answer or the rivals, is_near_tie, unknown_kind and rivals where there is no answer, end_x_m and end_y_m at the last look, driven_m in exploratory moves, looks, \
 scene_segments, scored_nodes, leader_score, runner_up_score, truth_score, map_bytes, \
 map_segments, message of an error); parameters, by their keys in a scenario, as they were applied; looks (look, heading_deg, compass_deg told \
 to the localiser (null without a compass), seen_segments, used_segments, decision in words; pose answered (x_m, y_m, heading_deg, covariance \
@@ -94,10 +94,15 @@ impl Attempt {
         }
         let record = &self.record;
         console::print(&format!(
-            "truth: {:.2}, {:.2} m, heading {:.1} degrees; nearest nodes {} ({:.2} m) and {}\n",
+            "truth: {:.2}, {:.2} m, heading {:.1} degrees; {}nearest nodes {} ({:.2} m) and {}\n",
             record.true_x_m,
             record.true_y_m,
             record.true_heading_deg,
+            if record.driven_m > 0.0 {
+                format!("after {:.2} m of moves {:.2}, {:.2} m; ", record.driven_m, record.end_x_m, record.end_y_m)
+            } else {
+                String::new()
+            },
             record.nearest_node,
             record.nearest_node_distance_m,
             record.second_nearest_node

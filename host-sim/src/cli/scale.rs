@@ -70,7 +70,7 @@ impl Scale {
         let mut lines = Vec::new();
         let mut starts: Option<(u32, Vec<CampusStart>)> = None;
         for buildings in sizes {
-            let path = self.out.join(format!("campus-{}.edgemap", buildings * per_building));
+            let path = self.out.join(format!("campus-{}-{}.edgemap", self.seed, buildings * per_building));
             make_map(&campus, buildings, &self.out.join("buildings"), &path)?;
             let with_robots = buildings.min(BUILDINGS_OF_ROBOTS);
             if starts.as_ref().is_none_or(|(of, _)| *of != with_robots) {

@@ -75,7 +75,7 @@ impl LearnedProjection {
     }
 }
 
-/// Fills the parts of the index of `map` by `projection`, in parallel; tells `on_node` of each node and sector done.
+/// Fills the parts of the index of `map` by `projection`, in parallel; tells `on_nodes` of each node and sector done.
 pub fn fill_index(
     map: &TopologicalDatabase<'_>,
     projection: &LearnedProjection,

@@ -45,7 +45,7 @@ pub struct TrialRecord {
     pub nearest_node: u32,
     /// The second nearest node (equal to the nearest in a map of one node).
     pub second_nearest_node: u32,
-    /// Distance to the nearest node \[m\].
+    /// Distance from there to the nearest node \[m\].
     pub nearest_node_distance_m: f32,
     /// How the trial ended.
     pub outcome: Outcome,
@@ -73,6 +73,11 @@ pub struct TrialRecord {
     /// The rivals named instead of an answer, the likeliest first: `node@x,y:probability`, positions in metres, with
     /// blanks between them.
     pub rivals: Option<String>,
+    /// True position at the last look in the world frame \[m\]: that at the first, unless the robot moved. Answers, nodes
+    /// and errors are of it.
+    pub end_x_m: f32,
+    /// True position at the last look in the world frame \[m\].
+    pub end_y_m: f32,
     /// Way driven in exploratory moves \[m\]; the answer is of where the robot stands after them.
     pub driven_m: f32,
     /// Looks taken.

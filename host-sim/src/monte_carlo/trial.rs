@@ -150,6 +150,8 @@ impl<'s> Trial<'s> {
             is_near_tie: false,
             unknown_kind: None,
             rivals: None,
+            end_x_m: position.x,
+            end_y_m: position.y,
             driven_m: 0.0,
             looks: 0,
             scene_segments: 0,
@@ -178,6 +180,7 @@ impl<'s> Trial<'s> {
         was_candidate: &[bool],
     ) {
         // The answer is of where the robot stands now.
+        (record.end_x_m, record.end_y_m) = (position.x, position.y);
         [record.nearest_node, record.second_nearest_node] = self.site.two_nearest_nodes(position);
         record.nearest_node_distance_m = self.site.nodes[record.nearest_node as usize].distance(position);
         match decision {

@@ -87,6 +87,8 @@ fn record(stream: &mut Stream, row: &str, start: Start, trial: u32, nodes: &[Poi
         is_near_tie: false,
         unknown_kind: None,
         rivals: None,
+        end_x_m: place.x,
+        end_y_m: place.y,
         driven_m: 0.0,
         looks: 1 + stream.index(if is_success { 4 } else { 12 }) as u32,
         scene_segments: 200,

@@ -133,10 +133,17 @@ fn check_localizer(localizer: &LocalizerSettings) -> Result<(), IllegalValue> {
     require(cells % 2 == 1, "localizer.verification.cells_per_side", &cells, "an odd number", || {
         "the node lies in the middle; add one".to_owned()
     })?;
-    within("localizer.verification.confidence", verification.confidence, 0.0..=100.0, "0.45 is the default")?;
+    within("localizer.verification.confidence", verification.confidence, 0.0..=100.0, "0.4 is the default")?;
     within("localizer.verification.refined", verification.refined, 1..=256, "56 is the default")?;
     let finalists = verification.finalists;
     within("localizer.verification.finalists", finalists, 1..=verification.refined, "at most as many as are refined")?;
+    within("localizer.verification.moves", verification.moves, 0..=15, "2 is the default; 0 asks for none")?;
+    within(
+        "localizer.verification.move_m",
+        verification.move_m,
+        0.25..=10.0,
+        "1 m is the default; moves = 0 asks for none",
+    )?;
     let covered_px = pgh.max_distance_px * if pgh.signed { 2.0 } else { 1.0 };
     let bin_px = covered_px / f64::from(pgh.distance_bins);
     require(

@@ -197,6 +197,8 @@ mod tests {
             is_near_tie: false,
             unknown_kind: None,
             rivals: None,
+            end_x_m: 0.0,
+            end_y_m: 0.0,
             driven_m: 0.0,
             looks: 1,
             scene_segments: 50,

@@ -23,6 +23,7 @@
 //! | [`CornerMatch`] | psi_cm | 1 % | calibration | matches that share of the corners wrongly |
 //! | [`CameraCalibration`] | psi_c | 1 | both | gives each map's robot wrong parameters of its cameras |
 //! | [`Compass`] | | off; 2 degrees | looks | tells the localiser a wrong heading |
+//! | [`Odometry`] | | off; 1 % | looks | tells the localiser wrong turns and steps |
 
 mod camera_calibration;
 mod camera_tilt;

@@ -11,6 +11,7 @@ use super::{ActsIn, SourceFacts, UncertaintySource};
 use crate::random::Stream;
 use edgeloc::geometry::Angle;
 use edgeloc::localize::Motion;
+use edgeloc::math;
 
 const FACTS: SourceFacts = SourceFacts {
     key: "odometry",
@@ -45,7 +46,8 @@ impl Odometry {
         let spread = self.magnitude as f32;
         Motion {
             turn_standard_deviation: Angle::from_radians(turn.radians().abs() * spread),
-            step_standard_deviation_m: ahead_m * spread,
+            // Sideways the way errs by its own turn.
+            step_standard_deviation_m: ahead_m * spread * math::length(1.0, turn.radians()),
             ..Motion::exact(told_turn, ahead_m * (1.0 + step_error))
         }
     }
@@ -93,6 +95,9 @@ mod tests {
         }
         let first = motions.first().expect("a motion");
         assert!((first.turn_standard_deviation.degrees() - 1.2).abs() < 1e-4);
-        assert!((first.step_standard_deviation_m - 0.02).abs() < 1e-6);
+        let aside = |motion: &Motion| (motion.step_m.y * 0.5 - motion.step_m.x * 0.866_025_4).powi(2);
+        let sideways = (motions.iter().map(aside).sum::<f32>() / LOOKS as f32).sqrt();
+        assert!((sideways - 0.02 * TURN.radians()).abs() < 0.002, "{sideways}");
+        assert!((0.02..0.02 * 1.5).contains(&first.step_standard_deviation_m));
     }
 }

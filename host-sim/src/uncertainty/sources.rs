@@ -234,7 +234,6 @@ mod tests {
     use crate::camera::StereoFeature;
     use crate::uncertainty::test_observation::{corners, observation};
     use edgeloc::geometry::{Polarity, Segment2};
-    use edgeloc::stereo::CornerPair;
 
     const KEY: NoiseKey = NoiseKey::view(9, 4, 0, 0);
 

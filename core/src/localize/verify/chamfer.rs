@@ -4,7 +4,7 @@
 //! for each other.
 
 use super::channel::CHANNELS;
-use super::distance_planes::{COLUMNS, Pixel, ROWS, UNITS_PER_PIXEL};
+use super::distance_planes::{COLUMNS, Pixel, UNITS_PER_PIXEL};
 
 const STEP: u8 = UNITS_PER_PIXEL as u8;
 const DIAGONAL: u8 = 7;
@@ -23,7 +23,7 @@ pub(super) fn spread(pixels: &mut [Pixel]) {
         before[1..=COLUMNS].copy_from_slice(row);
     }
     before = [FAR; COLUMNS + 2];
-    for row in pixels.chunks_exact_mut(COLUMNS).rev().take(ROWS) {
+    for row in pixels.chunks_exact_mut(COLUMNS).rev() {
         let mut beside = FAR;
         for (column, pixel) in row.iter_mut().enumerate().rev() {
             beside = relaxed(pixel, &beside, [&before[column], &before[column + 1], &before[column + 2]]);

@@ -36,13 +36,18 @@ pub(super) struct Closeness {
 }
 
 impl Closeness {
-    /// As closely, for the camera as it stood at a look.
+    /// As closely, for the camera as it stood at a look, whose heading is one of those it may have had.
     pub(super) fn at(self, look: &LookPose) -> Self {
         Self {
             position_m: math::length(self.position_m, look.way_spread_m),
-            heading_rad: math::length(self.heading_rad, look.heading_spread_rad),
+            heading_rad: math::length(self.heading_rad, look.heading_left_rad()),
             ..self
         }
+    }
+
+    /// As closely, for the camera as it stood at a look, whose heading may be off by all its spread.
+    pub(super) fn loosely_at(self, look: &LookPose) -> Self {
+        Self { heading_rad: math::length(self.heading_rad, look.heading_spread_rad), ..self.at(look) }
     }
 }
 

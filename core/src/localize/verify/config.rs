@@ -1,6 +1,7 @@
 //! The parameters of verification, all in one place.
 
 use super::headings::MAX_HEADINGS;
+use super::kept_looks::LEAST_MOVE_M;
 
 /// Parameters of the verifying localiser, beside those that every localiser has.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,9 +22,11 @@ pub struct VerificationConfig {
     pub finalists: u16,
     /// Where to look next.
     pub next_look: NextLook,
-    /// Exploratory moves asked for where turns can't tell, 0 to 15; none of a robot that reports no motion.
+    /// Exploratory moves asked for where turns can't tell, 0 to 15; none of a robot that reports no motion. They need the
+    /// memory that poor looks leave: [`max_looks`](crate::localize::LocalizerConfig::max_looks) looks of as many segments as
+    /// may enter fill it.
     pub moves: u16,
-    /// Length of a move where there is room \[m\], 0 to 10.
+    /// Length of a move where there is room \[m\], 0.25 to 10.
     pub move_m: f32,
 }
 
@@ -66,7 +69,7 @@ impl VerificationConfig {
             && (1..=256).contains(&self.refined)
             && (1..=self.refined).contains(&self.finalists)
             && self.moves <= 15
-            && (0.0..=10.0).contains(&self.move_m)
+            && (LEAST_MOVE_M..=10.0).contains(&self.move_m)
     }
 
     /// Places that the robot looks around from, at most.

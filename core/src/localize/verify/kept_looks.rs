@@ -9,8 +9,12 @@ use crate::localize::{HeadingPrior, Motion};
 use crate::math;
 use zerocopy::{FromBytes, Immutable, IntoBytes};
 
+/// A heading known better than this beside the first look's is taken as it is told \[rad\]: 0.2 degrees.
+const EXACT_HEADING_RAD: f32 = 0.0035;
+/// Standard deviations to either side at which a heading that is known less well is tried too.
+const SPREADS: f32 = 1.2;
 /// A robot that drove less stands where it stood \[m\].
-const LEAST_MOVE_M: f32 = 0.25;
+pub(super) const LEAST_MOVE_M: f32 = 0.25;
 
 /// How the camera stood at a look, as far as compass and odometry tell.
 #[derive(Debug, Clone, Copy, PartialEq, Default, FromBytes, IntoBytes, Immutable)]
@@ -30,18 +34,30 @@ pub(super) struct LookPose {
 }
 
 impl LookPose {
-    /// Whether it was taken after a move.
+    /// What its heading may be off beside that of the first look: nothing, or to either side \[rad\].
+    pub(super) fn heading_errors_rad(&self) -> impl Iterator<Item = f32> + use<> {
+        let step_rad = SPREADS * self.heading_spread_rad;
+        let tried = if self.heading_spread_rad > EXACT_HEADING_RAD { 3 } else { 1 };
+        [0.0, -step_rad, step_rad].into_iter().take(tried)
+    }
+
+    /// What is left of that beside the errors tried \[rad\].
+    pub(super) fn heading_left_rad(&self) -> f32 {
+        if self.heading_spread_rad > EXACT_HEADING_RAD {
+            0.4 * self.heading_spread_rad
+        } else {
+            self.heading_spread_rad
+        }
+    }
+
+    /// Whether it was taken after a move, not merely after turns that drifted.
     pub(super) fn is_elsewhere(&self) -> bool {
-        let [x, y] = self.way_m;
-        x != 0.0 || y != 0.0
+        math::length(self.way_m[0], self.way_m[1]) >= LEAST_MOVE_M
     }
 
     /// The way made since the first look if the compass erred by that much there, axes of the world \[m\].
     pub(super) fn way_m_if(&self, heading_error_rad: f32) -> [f32; 2] {
         let [x, y] = self.way_m;
-        if !self.is_elsewhere() {
-            return self.way_m;
-        }
         let (sin, cos) = math::sin_cos(heading_error_rad);
         [x * cos - y * sin, x * sin + y * cos]
     }
@@ -180,7 +196,7 @@ impl<'m> KeptLooks<'m> {
         if self.compass_spread_rad.is_none() {
             self.dominant.add_image(segments, pose.heading_rad, frame);
         }
-        let before = self.pose(self.count.saturating_sub(1)).way_m;
+        let before = self.pose(self.first_here.min(self.count.saturating_sub(1))).way_m;
         if math::length(pose.way_m[0] - before[0], pose.way_m[1] - before[1]) >= LEAST_MOVE_M {
             self.first_here = self.count;
         }
@@ -220,7 +236,8 @@ impl<'m> KeptLooks<'m> {
                     math::length(last.heading_spread_rad, sane(motion.turn_standard_deviation.radians()));
             }
         }
-        if let Some((told_rad, spread_rad)) = told
+        // Without a compass at the first look headings are relative to it, and what a compass tells later is not.
+        if let Some((told_rad, spread_rad)) = told.filter(|_| self.compass_spread_rad.is_some() || motion.is_none())
             && (spread_rad < next.heading_spread_rad || next.heading_spread_rad >= 0.5)
         {
             (next.heading_rad, next.heading_spread_rad) = (told_rad, spread_rad);

@@ -1,6 +1,7 @@
 //! Whose model tells what is seen from a place: that of the node a hypothesis is posed beside, and after a move that of
 //! the node it came to stand beside.
 
+use super::kept_looks::LookPose;
 use crate::database::{Node, TopologicalDatabase};
 use crate::geometry::Point2;
 
@@ -18,8 +19,18 @@ impl<'m> Model<'m> {
         Self { node, shift_m: [0.0; 2] }
     }
 
+    /// After a move that of the node nearest to `offset_m` from `node`, if it is another.
+    pub(super) fn elsewhere(
+        look: &LookPose,
+        node: &Node<'m>,
+        offset_m: [f32; 2],
+        database: &TopologicalDatabase<'m>,
+    ) -> Option<Self> {
+        if look.is_elsewhere() { Self::nearest(node, offset_m, database) } else { None }
+    }
+
     /// That of the node nearest to `offset_m` from `node`, if it is another.
-    pub(super) fn nearest(node: &Node<'m>, offset_m: [f32; 2], database: &TopologicalDatabase<'m>) -> Option<Self> {
+    fn nearest(node: &Node<'m>, offset_m: [f32; 2], database: &TopologicalDatabase<'m>) -> Option<Self> {
         let from = node.position();
         let here = Point2::new(from.x + offset_m[0], from.y + offset_m[1]);
         let mut nearest: Option<(f32, Node<'m>)> = None;

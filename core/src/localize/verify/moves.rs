@@ -32,9 +32,13 @@ impl Moves {
 
     /// Sees from the last of `looks` what became of the move asked for: the robot stands elsewhere, or where it stood.
     pub(super) fn look(&mut self, looks: &KeptLooks<'_>) {
+        let is_elsewhere = looks.here().len() == 1;
+        if is_elsewhere {
+            self.blocked = 0;
+        }
         let Some(asked_rad) = self.asked_rad.take() else { return };
-        if looks.here().len() == 1 {
-            (self.made, self.blocked) = (self.made + 1, 0);
+        if is_elsewhere {
+            self.made += 1;
         } else if let Some(place) = self.blocked_rad.get_mut(self.blocked) {
             *place = asked_rad;
             self.blocked += 1;

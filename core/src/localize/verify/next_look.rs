@@ -8,7 +8,7 @@ use super::check::{Checker, Closeness};
 use super::clear_way::clear_way_m;
 use super::hypothesis::Hypothesis;
 use super::judgement::seen_weight;
-use super::kept_looks::{KeptLooks, LookPose};
+use super::kept_looks::{KeptLooks, LEAST_MOVE_M, LookPose};
 use super::models::Model;
 use super::moves::Moves;
 use super::{Evidence, SeenSegment};
@@ -71,7 +71,8 @@ pub(super) fn most_telling_turn(
         return turn;
     };
     let mut best: Option<(f32, Angle)> = None;
-    for step in 1..max_looks {
+    let around = (core::f32::consts::TAU / math::max(math::abs(turn.radians()), 0.01) + 0.5) as u16;
+    for step in 1..max_looks.min(around) {
         let onward = Angle::from_radians(turn.radians() * f32::from(step)).wrapped();
         let ahead = LookPose { heading_rad: last.heading_rad + onward.radians(), ..last };
         let apart_rad =
@@ -102,7 +103,7 @@ pub(super) fn most_telling_move(
     };
     let best_place = contest.best();
     let Some(node) = database.node(best_place.node()) else { return straight };
-    let offset_m = best_place.offset_at(&last);
+    let (model, offset_m) = model_at(best_place, node, &last, database);
     let mut best: Option<([f32; 2], Angle)> = None;
     for direction in 0..DIRECTIONS {
         let turn = Angle::from_degrees(360.0 / f32::from(DIRECTIONS) * f32::from(direction)).wrapped();
@@ -111,8 +112,9 @@ pub(super) fn most_telling_move(
             continue;
         }
         let sin_cos = math::sin_cos(heading_rad + best_place.heading_error_rad);
-        let clear_m = clear_way_m(&node, offset_m, sin_cos, move_m + STANDOFF_M);
-        let step_m = math::max(clear_m - STANDOFF_M, 0.0);
+        let clear_m = clear_way_m(&model.node, offset_m, sin_cos, move_m + STANDOFF_M);
+        // What blocks the way is known in part: where all seems blocked the robot tries.
+        let step_m = math::max(clear_m - STANDOFF_M, LEAST_MOVE_M);
         if best.is_some_and(|([most_m, _], _)| step_m < most_m) {
             continue;
         }
@@ -182,7 +184,7 @@ fn model_at<'m>(
     database: &TopologicalDatabase<'m>,
 ) -> (Model<'m>, [f32; 2]) {
     let offset_m = place.offset_at(ahead);
-    let elsewhere = ahead.is_elsewhere().then(|| Model::nearest(&node, offset_m, database)).flatten();
+    let elsewhere = Model::elsewhere(ahead, &node, offset_m, database);
     let model = elsewhere.unwrap_or(Model::own(node));
     (model, model.offset(offset_m))
 }

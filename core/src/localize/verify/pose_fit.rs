@@ -1,11 +1,11 @@
 //! The metric pose with its covariance: model segments laid onto the seen ones, by least squares.
 //!
 //! Each model segment that finds a seen one near it, alike in direction, is one measurement of the distance across it
-//! (its points share the lateral shift of the edge). Three rounds of Gauss and Newton with weights after Cauchy.
+//! (its points share the lateral shift of the edge). Five rounds of Gauss and Newton with weights after Cauchy.
 
 use super::check::{Checker, Projected};
 use super::hypothesis::Hypothesis;
-use super::kept_looks::KeptLooks;
+use super::kept_looks::{KeptLooks, LookPose};
 use super::seen_segment::SeenSegment;
 use crate::database::TopologicalDatabase;
 use crate::math;
@@ -29,6 +29,25 @@ pub(super) struct FittedPose {
     pub(super) covariance: [[f32; 3]; 3],
 }
 
+impl FittedPose {
+    /// The covariance of the pose at a look: that at the first, carried along the way, and what odometry adds.
+    pub(super) fn covariance_at(&self, look: &LookPose) -> [[f32; 3]; 3] {
+        let [x, y] = look.way_m_if(self.heading_error_rad);
+        let arm = [-y, x, 0.0];
+        let first = &self.covariance;
+        let mut at = *first;
+        for row in 0..3 {
+            for column in 0..3 {
+                at[row][column] +=
+                    arm[row] * first[2][column] + first[row][2] * arm[column] + arm[row] * first[2][2] * arm[column];
+            }
+        }
+        let (way, heading) = (look.way_spread_m, look.heading_spread_rad);
+        (at[0][0], at[1][1], at[2][2]) = (at[0][0] + way * way, at[1][1] + way * way, at[2][2] + heading * heading);
+        at
+    }
+}
+
 /// Fits the pose of `hypothesis` to all looks.
 pub(super) fn fit(
     hypothesis: &Hypothesis,
@@ -48,7 +67,7 @@ pub(super) fn fit(
             let way_m = at.way_m_if(pose.heading_error_rad);
             let offset_m = [pose.offset_m[0] + way_m[0], pose.offset_m[1] + way_m[1]];
             checker.turn(&node, at.heading_rad + pose.heading_error_rad, (offset_m, 0.05));
-            normal.add_look(checker, offset_m, looks.segments(look), gate_px);
+            normal.add_look(checker, (offset_m, way_m), looks.segments(look), gate_px);
         }
         let Some((step, covariance)) = normal.solve() else { return pose };
         pose.offset_m = [pose.offset_m[0] + step[0], pose.offset_m[1] + step[1]];
@@ -81,11 +100,20 @@ impl Normal {
         }
     }
 
-    fn add_look(&mut self, checker: &Checker<'_>, offset_m: [f32; 2], seen: &[SeenSegment], gate_px: f32) {
+    /// Adds a look from `offset_m` from the node, after a way that turns with the heading at the first look.
+    fn add_look(
+        &mut self,
+        checker: &Checker<'_>,
+        (offset_m, way_m): ([f32; 2], [f32; 2]),
+        seen: &[SeenSegment],
+        gate_px: f32,
+    ) {
         let offset = checker.in_camera(offset_m);
         for segment in checker.view() {
             let Some(projected) = checker.project(segment, offset) else { continue };
-            if let Some(measurement) = measure(checker, &projected, seen, gate_px) {
+            if let Some(mut measurement) = measure(checker, &projected, seen, gate_px) {
+                let [by_x, by_y, by_heading] = measurement.slope;
+                measurement.slope[2] = by_heading + by_y * way_m[0] - by_x * way_m[1];
                 self.add(&measurement);
             }
         }

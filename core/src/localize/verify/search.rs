@@ -206,7 +206,7 @@ impl<'m> Search<'m> {
         let headings = self.headings;
         let closeness =
             Closeness { position_m: 0.4 * self.cell_m, heading_rad: 0.67 * headings.left_rad, spacing_px: 14.0 };
-        let closeness = closeness.at(&pose);
+        let closeness = closeness.loosely_at(&pose);
         let per_heading = self.config.cells_per_node();
         let cell_m = self.cell_m;
         let offset_of = |index: i32| [(index % side - half) as f32 * cell_m, (index / side - half) as f32 * cell_m];
@@ -220,7 +220,7 @@ impl<'m> Search<'m> {
             for (&heading_error_rad, cells) in headings.errors_rad().iter().zip(cells.chunks_exact_mut(per_heading)) {
                 let reach_m = (half + 1) as f32 * self.cell_m;
                 let way_m = pose.way_m_if(heading_error_rad);
-                let elsewhere = pose.is_elsewhere().then(|| Model::nearest(&node, way_m, database)).flatten();
+                let elsewhere = Model::elsewhere(&pose, &node, way_m, database);
                 let model = elsewhere.unwrap_or(Model::own(node));
                 checker.turn(&model.node, pose.heading_rad + heading_error_rad, (model.offset(way_m), reach_m));
                 let mut live = (0..).zip(cells).filter(|(index, cell)| {
@@ -313,21 +313,22 @@ impl<'m> Search<'m> {
                     let way_m = pose.way_m_if(heading_error_rad);
                     let heading_rad = pose.heading_rad + heading_error_rad;
                     let center_m = moved(parent.offset_m, way_m);
-                    let mut look_from = |model: Model<'_>| {
-                        checker.turn(&model.node, heading_rad, (model.offset(center_m), 2.0 * step_m));
+                    let elsewhere = Model::elsewhere(&pose, &node, center_m, database);
+                    let mut evidence: Option<[Evidence; POSITIONS]> = None;
+                    for model in [Some(Model::own(node)), elsewhere].into_iter().flatten() {
                         let mut offsets_m = [[0.0; 2]; POSITIONS];
                         for (index, offset_m) in offsets_m.iter_mut().enumerate() {
                             *offset_m = model.offset(moved(child_of(parent, first + index).offset_m, way_m));
                         }
-                        checker.evidence(&offsets_m, &closeness)
-                    };
-                    let mut evidence = look_from(Model::own(node));
-                    let elsewhere = pose.is_elsewhere().then(|| Model::nearest(&node, center_m, database)).flatten();
-                    if let Some(model) = elsewhere {
-                        for (own, other) in evidence.iter_mut().zip(look_from(model)) {
-                            *own = own.better(other, looks.seen_q4_in(look));
+                        for error_rad in pose.heading_errors_rad() {
+                            checker.turn(&model.node, heading_rad + error_rad, (model.offset(center_m), 2.0 * step_m));
+                            let found = checker.evidence(&offsets_m, &closeness);
+                            evidence = Some(evidence.map_or(found, |best| {
+                                core::array::from_fn(|child| best[child].better(found[child], pose.seen_q4))
+                            }));
                         }
                     }
+                    let Some(evidence) = evidence else { continue };
                     for (child, look) in group.iter_mut().zip(evidence) {
                         *child = child.plus(look);
                     }
@@ -362,12 +363,16 @@ pub(super) fn agreement_of_look(
     let offset_m = pose.offset_at(&at);
     let closeness = Closeness { position_m: 0.03, heading_rad: 0.0, spacing_px: 9.0 }.at(&at);
     checker.draw(looks, look);
-    let elsewhere = at.is_elsewhere().then(|| Model::nearest(&node, offset_m, database)).flatten();
-    let agreement_by = |model: Model<'_>| {
-        checker.turn(&model.node, at.heading_rad + pose.heading_error_rad, (model.offset(offset_m), 0.05));
-        checker.evidence(&[model.offset(offset_m)], &closeness)[0].score_q20(seen_q4)
-    };
-    [Some(Model::own(node)), elsewhere].into_iter().flatten().map(agreement_by).max().unwrap_or(0)
+    let elsewhere = Model::elsewhere(&at, &node, offset_m, database);
+    let mut best_q20 = i32::MIN;
+    for model in [Some(Model::own(node)), elsewhere].into_iter().flatten() {
+        for error_rad in at.heading_errors_rad() {
+            let heading_rad = at.heading_rad + pose.heading_error_rad + error_rad;
+            checker.turn(&model.node, heading_rad, (model.offset(offset_m), 0.05));
+            best_q20 = best_q20.max(checker.evidence(&[model.offset(offset_m)], &closeness)[0].score_q20(seen_q4));
+        }
+    }
+    best_q20
 }
 
 /// What the caller lends for a search: cells, the ranked, the refined and their children.

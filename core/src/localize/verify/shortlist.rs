@@ -49,7 +49,12 @@ impl<'m> Shortlist<'m> {
         }
         let first = if changed { 0 } else { looks.count() - 1 };
         for (look, code) in self.codes.iter().enumerate().take(looks.count()).skip(first) {
-            let heading_rad = looks.pose(look).heading_rad;
+            let pose = looks.pose(look);
+            // The index tells of the places at the first look; a look from elsewhere says nothing of them.
+            if pose.is_elsewhere() {
+                continue;
+            }
+            let heading_rad = pose.heading_rad;
             self.stage.add(code, headings.errors_rad().iter().map(|error| heading_rad + error));
         }
         let room = self.chosen.len() - kept.len().min(self.chosen.len() / 2);

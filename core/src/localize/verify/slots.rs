@@ -15,6 +15,10 @@ pub(super) struct Slot {
 
 impl Slot {
     const EMPTY: Self = Self { node: u32::MAX, looks: 0 };
+
+    const fn is_empty(self) -> bool {
+        self.node == Self::EMPTY.node
+    }
 }
 
 /// The slots; none stands for one for every node, in their order.
@@ -50,7 +54,7 @@ impl<'m> Slots<'m> {
 
     /// Whether the evidence of any lacks the look.
     pub(super) fn lack(&self, look: usize) -> bool {
-        self.slots.iter().any(|slot| *slot != Slot::EMPTY && slot.looks as usize <= look)
+        self.slots.iter().any(|slot| !slot.is_empty() && slot.looks as usize <= look)
     }
 
     /// Takes down that the evidence of all is of all looks up to this one.
@@ -65,7 +69,7 @@ impl<'m> Slots<'m> {
 
     /// The nodes that have a grid.
     pub(super) fn nodes(&self) -> impl Iterator<Item = NodeId> {
-        self.slots.iter().filter(|slot| **slot != Slot::EMPTY).map(|slot| NodeId(slot.node))
+        self.slots.iter().filter(|slot| !slot.is_empty()).map(|slot| NodeId(slot.node))
     }
 
     /// Gives grids to the `chosen` nodes; those of them and of the `kept` hypotheses that have one keep it. Tells `renew` of
@@ -81,7 +85,7 @@ impl<'m> Slots<'m> {
             if self.slots.iter().any(|slot| slot.node == node) {
                 continue;
             }
-            let empty = self.slots.iter().skip(from).position(|slot| *slot == Slot::EMPTY);
+            let empty = self.slots.iter().skip(from).position(|slot| slot.is_empty());
             let Some(index) = empty.map(|place| from + place) else { return };
             self.slots[index] = Slot { node, looks: 0 };
             renew(index);
@@ -108,6 +112,7 @@ mod tests {
         assert_eq!((nodes(&slots), &*renewed), ([3, 5, 8].to_vec(), &[0, 1, 2][..]));
         slots.cover(0);
         assert!(!slots.lack(0) && slots.lack(1));
+        assert_eq!(nodes(&slots), [3, 5, 8]);
         renewed.clear();
         let kept = [Hypothesis::new(NodeId(8), [0.0; 2], 0.0)];
         slots.choose(&[1, 5, 9], &kept, |slot| renewed.push(slot));

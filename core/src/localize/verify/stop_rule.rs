@@ -24,9 +24,9 @@ const LEAST_AGREEMENT: f32 = 0.9;
 const INSIDE_AGREEMENT: f32 = 0.75;
 /// The least at which a move is worth it: from elsewhere more may agree.
 const DOUBTFUL_AGREEMENT: f32 = 0.55;
-/// A look of so many segments
+/// Segments of a look that may contradict a place, however well others agree with it.
 const TELLING_SEGMENTS: usize = 75;
-/// that agrees less than this with the best place contradicts it, however well others agree.
+/// Such a look contradicts a place that it agrees less with than this.
 const CONTRADICTION: f32 = 0.25;
 /// A lead this clear no look contradicts: the map may have changed; in confidences asked for.
 const BEYOND_DOUBT: f32 = 2.5;

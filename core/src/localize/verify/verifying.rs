@@ -148,7 +148,7 @@ impl<'m> VerifyingLocalizer<'m> {
         match judgement {
             _ if may_turn => Decision::LookAgain { turn: self.next_turn(), step_m: 0.0 },
             _ if may_move && (is_poor || may_be_inside) => self.next_move(),
-            Some(_) | None if is_poor => Decision::Unknown { reason: UnknownReason::SceneTooPoor },
+            _ if is_poor => Decision::Unknown { reason: UnknownReason::SceneTooPoor },
             Some(judgement) if is_inside => {
                 let mut rivals = judgement.places;
                 rivals.retain_likelier(LEAST_PROBABILITY);
@@ -195,7 +195,8 @@ impl<'m> VerifyingLocalizer<'m> {
         let way_m = last.way_m_if(fitted.heading_error_rad);
         let position = Point2::new(from.x + fitted.offset_m[0] + way_m[0], from.y + fitted.offset_m[1] + way_m[1]);
         let heading = Heading::new(Angle::from_radians(last.heading_rad + fitted.heading_error_rad));
-        let pose = PoseEstimate { position, heading: heading.unwrap_or_default(), covariance: fitted.covariance };
+        let pose =
+            PoseEstimate { position, heading: heading.unwrap_or_default(), covariance: fitted.covariance_at(&last) };
         let node: NodeId = nearest_node(&self.database, position);
         let probability = judgement.places.iter().next().map(|place| place.probability);
         Localized { node, pose: Some(pose), probability }

@@ -58,9 +58,10 @@ pub fn trial_page(facts: &TrialFacts<'_>) -> String {
             h2 { "The trial" }
             p.note {
                 (format!(
-                    "The robot stood at {:.2}, {:.2} m, heading {:.1}°; the nodes nearest to it are {} ({:.2} m) and {}.",
-                    record.true_x_m, record.true_y_m, record.true_heading_deg, record.nearest_node,
-                    record.nearest_node_distance_m, record.second_nearest_node
+                    "The robot stood at {:.2}, {:.2} m, heading {:.1}°, and at its last look at {:.2}, {:.2} m, after {:.2} m \
+                     of moves; the nodes nearest to it are {} ({:.2} m) and {}.",
+                    record.true_x_m, record.true_y_m, record.true_heading_deg, record.end_x_m, record.end_y_m,
+                    record.driven_m, record.nearest_node, record.nearest_node_distance_m, record.second_nearest_node
                 ))
                 @if let Some(message) = &record.message { " It failed: " (message) }
             }
