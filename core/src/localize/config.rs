@@ -15,7 +15,8 @@ pub struct LocalizerConfig {
     pub score_margin: f32,
     /// Turn between looks; the paper's example is 30 degrees.
     pub turn: Angle,
-    /// Looks after which the leading node is answered, at least 1; 12 turns of 30 degrees are a full circle.
+    /// Looks from one place, at least 1; 12 turns of 30 degrees are a full circle. After them the paper's localiser answers
+    /// the leading node; the verifying one may ask for [moves](VerificationConfig::moves).
     pub max_looks: u16,
     /// Segments shorter than this are dropped, in the scene and in the prediction \[px\], 0 to 2048.
     pub min_length_px: f32,

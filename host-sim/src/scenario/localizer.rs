@@ -16,7 +16,7 @@ pub struct LocalizerSettings {
     pub score_margin: f64,
     /// Turn before the next look in degrees, counter-clockwise.
     pub turn_deg: f64,
-    /// Looks after which the leading node is the answer.
+    /// Looks from one place; then the paper's localiser answers the leading node, and ours moves or says what it knows.
     pub max_looks: u16,
     /// Shorter image segments are dropped in pixels.
     pub min_length_px: f64,
@@ -116,7 +116,7 @@ impl Default for PghSettings {
 pub struct VerificationSettings {
     /// Positions tried along either side of the square about each node; odd.
     pub cells_per_side: u16,
-    /// Headings tried in every cell where the compass errs; odd.
+    /// Headings that may be tried in every cell: 1 does for 2.5 degrees, 3 beyond, 4 without a compass.
     pub headings: u16,
     /// Lead of the best over its best rival, times the root of the segments seen in thirties, that is answered.
     pub confidence: f64,
