@@ -1,7 +1,7 @@
 //! Which segments take part, of scene and prediction alike.
 
 use super::LocalizerConfig;
-use crate::geometry::Segment2;
+use crate::geometry::{Point2, Segment2};
 use crate::math;
 
 /// Drops short and near-horizontal segments.
@@ -19,8 +19,12 @@ impl SegmentFilter {
 
     /// Whether `segment` is long enough and not near-horizontal. An exclusion of zero keeps horizontals.
     pub(super) fn keeps(&self, segment: &Segment2) -> bool {
-        let (dx, dy) = (segment.end().x - segment.start().x, segment.end().y - segment.start().y);
-        let is_horizontal = math::abs(dy) < self.horizontal_slope * math::abs(dx);
-        segment.length_px() >= self.min_length_px && !is_horizontal
+        self.keeps_between(segment.start(), segment.end())
+    }
+
+    /// The same of a segment between two points.
+    pub(super) fn keeps_between(&self, start: Point2, end: Point2) -> bool {
+        let is_horizontal = math::abs(end.y - start.y) < self.horizontal_slope * math::abs(end.x - start.x);
+        start.distance(end) >= self.min_length_px && !is_horizontal
     }
 }

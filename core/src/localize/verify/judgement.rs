@@ -2,7 +2,7 @@
 
 use super::hypothesis::Hypothesis;
 use super::kept_looks::KeptLooks;
-use crate::database::{NodeId, TopologicalDatabase};
+use crate::database::{Node, TopologicalDatabase};
 use crate::geometry::Point2;
 use crate::localize::{Rival, Rivals};
 use crate::math;
@@ -43,7 +43,11 @@ pub(super) fn judge(
             confidence = behind(next);
         }
         let odds = math::exp(-LOG_ODDS_PER_CONFIDENCE * behind(next));
-        if !places.push(Rival { node: nearest_node(database, here), position: here, probability: odds }) {
+        if !places.push(Rival {
+            node: nearest_node(database, here).map(|node| node.id()).unwrap_or_default(),
+            position: here,
+            probability: odds,
+        }) {
             break;
         }
     }
@@ -57,13 +61,13 @@ pub(super) fn seen_weight(segment_count: u32) -> f32 {
 }
 
 /// The node nearest to a position.
-pub(super) fn nearest_node(database: &TopologicalDatabase<'_>, position: Point2) -> NodeId {
-    let mut nearest = (NodeId(0), f32::INFINITY);
+pub(super) fn nearest_node<'m>(database: &TopologicalDatabase<'m>, position: Point2) -> Option<Node<'m>> {
+    let mut nearest: Option<(f32, Node<'m>)> = None;
     for node in database.nodes() {
         let distance = node.position().distance(position);
-        if distance < nearest.1 {
-            nearest = (node.id(), distance);
+        if nearest.is_none_or(|(least, _)| distance < least) {
+            nearest = Some((distance, node));
         }
     }
-    nearest.0
+    nearest.map(|(_, node)| node)
 }

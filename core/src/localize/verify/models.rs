@@ -1,6 +1,7 @@
 //! Whose model tells what is seen from a place: that of the node a hypothesis is posed beside, and after a move that of
 //! the node it came to stand beside.
 
+use super::judgement::nearest_node;
 use super::kept_looks::LookPose;
 use crate::database::{Node, TopologicalDatabase};
 use crate::geometry::Point2;
@@ -33,14 +34,7 @@ impl<'m> Model<'m> {
     fn nearest(node: &Node<'m>, offset_m: [f32; 2], database: &TopologicalDatabase<'m>) -> Option<Self> {
         let from = node.position();
         let here = Point2::new(from.x + offset_m[0], from.y + offset_m[1]);
-        let mut nearest: Option<(f32, Node<'m>)> = None;
-        for other in database.nodes() {
-            let distance = other.position().distance(here);
-            if nearest.is_none_or(|(least, _)| distance < least) {
-                nearest = Some((distance, other));
-            }
-        }
-        let (_, other) = nearest.filter(|(_, other)| other.id() != node.id())?;
+        let other = nearest_node(database, here).filter(|other| other.id() != node.id())?;
         let to = other.position();
         Some(Self { node: other, shift_m: [from.x - to.x, from.y - to.y] })
     }

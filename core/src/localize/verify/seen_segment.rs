@@ -25,11 +25,8 @@ impl SeenSegment {
 
     /// A segment between two points of the normal image, if `filter` keeps it.
     pub(super) fn predicted(start: Point2, end: Point2, filter: &SegmentFilter) -> Option<Self> {
-        let (dx, dy) = (end.x - start.x, end.y - start.y);
-        let is_long = math::length(dx, dy) >= filter.min_length_px;
-        let is_level = math::abs(dy) < filter.horizontal_slope * math::abs(dx);
         let q4 = |point: Point2| [point.x, point.y].map(|coordinate| math::round(coordinate * 16.0) as i16);
-        (is_long && !is_level).then(|| Self { start_q4: q4(start), end_q4: q4(end) })
+        filter.keeps_between(start, end).then(|| Self { start_q4: q4(start), end_q4: q4(end) })
     }
 
     /// Length in Q4 px.

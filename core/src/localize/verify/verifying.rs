@@ -13,7 +13,7 @@ use super::shortlist::Shortlist;
 use super::slots::Slots;
 use super::stop_rule::{Looked, StopRule};
 use super::{NextLook, VerificationConfig};
-use crate::database::{NodeId, TopologicalDatabase};
+use crate::database::TopologicalDatabase;
 use crate::geometry::{Angle, Heading, Point2};
 use crate::localize::extent::Extent;
 use crate::localize::first_stage::FirstStage;
@@ -197,7 +197,7 @@ impl<'m> VerifyingLocalizer<'m> {
         let heading = Heading::new(Angle::from_radians(last.heading_rad + fitted.heading_error_rad));
         let pose =
             PoseEstimate { position, heading: heading.unwrap_or_default(), covariance: fitted.covariance_at(&last) };
-        let node: NodeId = nearest_node(&self.database, position);
+        let node = nearest_node(&self.database, position).map(|node| node.id()).unwrap_or_default();
         let probability = judgement.places.iter().next().map(|place| place.probability);
         Localized { node, pose: Some(pose), probability }
     }
