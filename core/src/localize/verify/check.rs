@@ -17,6 +17,8 @@ use crate::math;
 
 /// Segments of a node that can be seen from near it at a heading; a node that shows more shows the first so many.
 pub(super) const VIEW_CAPACITY: usize = 384;
+/// Lanes for a batch that leaves half of them idle.
+const HALF: usize = LANES.div_ceil(2);
 /// Tolerance of the prediction apart from the pose \[px\]: lateral shift and the width of edges.
 const FIXED_TOLERANCE_PX: f32 = 6.0;
 /// Error of the model itself \[m\].
@@ -162,11 +164,26 @@ impl<'m> Checker<'m> {
         [x * sin - y * cos, x * cos + y * sin]
     }
 
-    /// Evidence for cameras at `offsets_m` from the node, axes of the world, as many as there are lanes at most; nothing in
-    /// the lanes beyond.
-    pub(super) fn evidence(&self, offsets_m: &[[f32; 2]], closeness: &Closeness) -> Lane<Evidence> {
-        let mut offsets = [[0.0; LANES]; 2];
-        for (lane, offset_m) in offsets_m.iter().enumerate().take(LANES) {
+    /// Evidence for a camera at `offset_m` from the node, axes of the world.
+    pub(super) fn evidence(&self, offset_m: [f32; 2], closeness: &Closeness) -> Evidence {
+        self.evidence_in_batch::<1>(&[offset_m], closeness)[0]
+    }
+
+    /// Evidence for cameras at `offsets_m` from the node, axes of the world, a place in `found` for each.
+    pub(super) fn evidence_of_all(&self, offsets_m: &[[f32; 2]], closeness: &Closeness, found: &mut [Evidence]) {
+        for (offsets_m, found) in offsets_m.chunks(LANES).zip(found.chunks_mut(LANES)) {
+            if offsets_m.len() > LANES / 2 {
+                found.copy_from_slice(&self.evidence_in_batch::<LANES>(offsets_m, closeness)[..found.len()]);
+            } else {
+                found.copy_from_slice(&self.evidence_in_batch::<HALF>(offsets_m, closeness)[..found.len()]);
+            }
+        }
+    }
+
+    /// Evidence for `N` cameras at most; nothing in the lanes beyond.
+    fn evidence_in_batch<const N: usize>(&self, offsets_m: &[[f32; 2]], closeness: &Closeness) -> Lane<Evidence, N> {
+        let mut offsets = [[0.0; N]; 2];
+        for (lane, offset_m) in offsets_m.iter().enumerate().take(N) {
             let [right, forward] = self.in_camera(*offset_m);
             (offsets[0][lane], offsets[1][lane]) = (right, forward);
         }
@@ -179,7 +196,11 @@ impl<'m> Checker<'m> {
     }
 
     #[inline(always)]
-    fn evidence_in_lanes(&self, offsets: &[Lane<f32>; 2], closeness: &Closeness) -> Lane<Evidence> {
+    fn evidence_in_lanes<const N: usize>(
+        &self,
+        offsets: &[Lane<f32, N>; 2],
+        closeness: &Closeness,
+    ) -> Lane<Evidence, N> {
         let focal = self.frame.focal_px;
         let (position, model) = (focal * closeness.position_m, focal * MODEL_ERROR_M);
         let depth_part = position * position + model * model;
@@ -188,19 +209,19 @@ impl<'m> Checker<'m> {
         let per_px = 1.0 / closeness.spacing_px;
         let tables = Tables { planes: self.planes.all(), responses: self.responses.tables() };
         let backgrounds = self.responses.backgrounds();
-        let mut explained = [0_i32; LANES];
-        let mut total = [0_i32; LANES];
+        let mut explained = [0_i32; N];
+        let mut total = [0_i32; N];
         for segment in self.view() {
             let image = self.project_in_lanes(segment, offsets);
             let is_seen = image.is_seen(&self.filter);
             if !is_seen.iter().fold(false, |any, is_seen| any | is_seen) {
                 continue;
             }
-            let mut width = [0_u32; LANES];
-            let mut channel = [0_u32; LANES];
-            let mut background = [0_i32; LANES];
-            let mut weight = [0_i32; LANES];
-            for lane in 0..LANES {
+            let mut width = [0_u32; N];
+            let mut channel = [0_u32; N];
+            let mut background = [0_i32; N];
+            let mut weight = [0_i32; N];
+            for lane in 0..N {
                 let tolerance = fixed_part + depth_part * image.inverse_depth[lane] * image.inverse_depth[lane];
                 width[lane] =
                     u32::from(tolerance > 100.0) + u32::from(tolerance > 400.0) + u32::from(tolerance > 1600.0);
@@ -208,15 +229,15 @@ impl<'m> Checker<'m> {
             }
             let count = Self::point_count(segment, per_px);
             let share = 0.25 * POINT_SHARES[count];
-            let mut first = [[0.0; LANES]; 2];
-            let mut step = [[0.0; LANES]; 2];
+            let mut first = [[0.0; N]; 2];
+            let mut step = [[0.0; N]; 2];
             for axis in 0..2 {
-                for lane in 0..LANES {
+                for lane in 0..N {
                     step[axis][lane] = image.way[axis][lane] * share;
                     first[axis][lane] = image.start[axis][lane] * 0.25 + 0.5 * step[axis][lane];
                 }
             }
-            for lane in 0..LANES {
+            for lane in 0..N {
                 let (channel, width) = (channel[lane] as usize & (CHANNELS - 1), width[lane] as usize & 3);
                 background[lane] = i32::from(backgrounds[channel][width]);
                 let length_q4 = if is_seen[lane] { rounded(image.length[lane] * 16.0) } else { 0 };
@@ -224,15 +245,15 @@ impl<'m> Checker<'m> {
             }
             let sum = tables.sum(count, (first, step), &channel, &width);
             let share_q16 = POINT_SHARES_Q16[count];
-            for lane in 0..LANES {
+            for lane in 0..N {
                 // At most 16,384 x 255: far from the border of i32.
                 let mean = (sum[lane] * share_q16) >> 16;
                 explained[lane] += (weight[lane] * (mean - background[lane]) + 128) >> 8;
                 total[lane] += (weight[lane] * (255 - background[lane]) + 128) >> 8;
             }
         }
-        let mut evidence = [Evidence::default(); LANES];
-        for lane in 0..LANES {
+        let mut evidence = [Evidence::default(); N];
+        for lane in 0..N {
             evidence[lane] = Evidence { explained_q4: explained[lane], total_q4: total[lane] };
         }
         evidence
@@ -240,11 +261,11 @@ impl<'m> Checker<'m> {
 
     /// Images of a model segment for cameras at `offsets` (right, forward), cut at the near limit and the border.
     #[inline(always)]
-    fn project_in_lanes(&self, segment: &ViewSegment, offsets: &[Lane<f32>; 2]) -> LaneImage {
+    fn project_in_lanes<const N: usize>(&self, segment: &ViewSegment, offsets: &[Lane<f32, N>; 2]) -> LaneImage<N> {
         let (frame, [left, right]) = (&self.frame, self.view_slopes);
         let ([start_x, start_y, start_z], [end_x, end_y, end_z]) = (segment.start, segment.end);
-        let (mut x, mut z) = ([[0.0_f32; LANES]; 2], [[0.0_f32; LANES]; 2]);
-        for lane in 0..LANES {
+        let (mut x, mut z) = ([[0.0_f32; N]; 2], [[0.0_f32; N]; 2]);
+        for lane in 0..N {
             x[0][lane] = start_x - offsets[0][lane];
             x[1][lane] = end_x - offsets[0][lane];
             z[0][lane] = start_z - offsets[1][lane];
@@ -261,7 +282,7 @@ impl<'m> Checker<'m> {
         let LanePart { enter, leave } = part;
         let SegmentEnds { x, z, .. } = ends;
         let mut image = LaneImage::EMPTY;
-        for lane in 0..LANES {
+        for lane in 0..N {
             let (way_x, way_y, way_z) = (x[1][lane] - x[0][lane], end_y - start_y, z[1][lane] - z[0][lane]);
             let (from, to) = (enter[lane], leave[lane]);
             let start_inverse = 1.0 / (z[0][lane] + way_z * from);
@@ -318,43 +339,43 @@ impl<'m> Checker<'m> {
 }
 
 /// Poses that are checked together.
-struct Batch<'a, 'm> {
+struct Batch<'a, 'm, const N: usize> {
     checker: &'a Checker<'m>,
-    offsets: &'a [Lane<f32>; 2],
+    offsets: &'a [Lane<f32, N>; 2],
     closeness: &'a Closeness,
 }
 
-impl Work for Batch<'_, '_> {
-    type Output = Lane<Evidence>;
+impl<const N: usize> Work for Batch<'_, '_, N> {
+    type Output = Lane<Evidence, N>;
 
     #[inline(always)]
-    fn run<B: Body>(self, _: B) -> Lane<Evidence> {
+    fn run<B: Body>(self, _: B) -> Lane<Evidence, N> {
         self.checker.evidence_in_lanes(self.offsets, self.closeness)
     }
 }
 
 /// Images of one model segment.
 #[derive(Debug)]
-struct LaneImage {
-    start: [Lane<f32>; 2],
-    way: [Lane<f32>; 2],
-    length: Lane<f32>,
-    inverse_depth: Lane<f32>,
-    is_inside: Lane<bool>,
+struct LaneImage<const N: usize> {
+    start: [Lane<f32, N>; 2],
+    way: [Lane<f32, N>; 2],
+    length: Lane<f32, N>,
+    inverse_depth: Lane<f32, N>,
+    is_inside: Lane<bool, N>,
 }
 
-impl LaneImage {
+impl<const N: usize> LaneImage<N> {
     const EMPTY: Self = Self {
-        start: [[0.0; LANES]; 2],
-        way: [[0.0; LANES]; 2],
-        length: [0.0; LANES],
-        inverse_depth: [0.0; LANES],
-        is_inside: [false; LANES],
+        start: [[0.0; N]; 2],
+        way: [[0.0; N]; 2],
+        length: [0.0; N],
+        inverse_depth: [0.0; N],
+        is_inside: [false; N],
     };
 
     /// In which lanes the segment is in view, long enough and not near-horizontal.
     #[inline(always)]
-    fn is_seen(&self, filter: &SegmentFilter) -> Lane<bool> {
+    fn is_seen(&self, filter: &SegmentFilter) -> Lane<bool, N> {
         core::array::from_fn(|lane| {
             let (width, height) = (magnitude(self.way[0][lane]), magnitude(self.way[1][lane]));
             self.is_inside[lane]

@@ -199,5 +199,5 @@ fn evidence_for(
     let Some(node) = database.node(place.node()) else { return Evidence::default() };
     let (model, offset_m) = model_at(place, node, ahead, database);
     checker.turn(&model.node, ahead.heading_rad + place.heading_error_rad, (offset_m, 0.05));
-    checker.evidence(&[offset_m], &CLOSENESS)[0]
+    checker.evidence(offset_m, &CLOSENESS)
 }

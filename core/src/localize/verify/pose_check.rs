@@ -81,6 +81,6 @@ impl<'m> PoseCheck<'m> {
         [position_m, heading_rad, spacing_px]: [f32; 3],
     ) -> Evidence {
         self.checker.turn(node, heading.angle().radians(), (offset_m, 0.01));
-        self.checker.evidence(&[offset_m], &Closeness { position_m, heading_rad, spacing_px })[0]
+        self.checker.evidence(offset_m, &Closeness { position_m, heading_rad, spacing_px })
     }
 }

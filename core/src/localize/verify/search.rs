@@ -7,7 +7,6 @@ use super::headings::Headings;
 use super::hypothesis::{Hypothesis, keep_best};
 use super::judgement::seen_weight;
 use super::kept_looks::KeptLooks;
-use super::lanes::LANES;
 use super::models::Model;
 use super::shortlist::Shortlist;
 use super::slots::Slots;
@@ -16,6 +15,8 @@ use super::{Evidence, VerificationConfig};
 use crate::database::TopologicalDatabase;
 use crate::math;
 
+/// Cells that are checked at a time.
+const BATCH: usize = 16;
 /// Positions tried along either side of the square about a hypothesis.
 const SIDE: usize = 4;
 /// Poses tried about a hypothesis at a heading.
@@ -229,8 +230,9 @@ impl<'m> Search<'m> {
                     column * column + row * row <= half * (half + 1) && !cell.is_refuted()
                 });
                 loop {
-                    let mut batch: [Option<(i32, &mut CellEvidence)>; LANES] = [const { None }; LANES];
-                    let mut offsets_m = [[0.0; 2]; LANES];
+                    let mut batch: [Option<(i32, &mut CellEvidence)>; BATCH] = [const { None }; BATCH];
+                    let mut offsets_m = [[0.0; 2]; BATCH];
+                    let mut found = [Evidence::default(); BATCH];
                     let mut taken = 0;
                     for (place, (index, cell)) in batch.iter_mut().zip(&mut live) {
                         offsets_m[taken] = model.offset(moved(offset_of(index), way_m));
@@ -240,8 +242,8 @@ impl<'m> Search<'m> {
                     if taken == 0 {
                         break;
                     }
-                    let evidence = checker.evidence(&offsets_m[..taken], &closeness);
-                    for ((index, cell), look) in batch.into_iter().flatten().zip(evidence) {
+                    checker.evidence_of_all(&offsets_m[..taken], &closeness, &mut found[..taken]);
+                    for ((index, cell), look) in batch.into_iter().flatten().zip(found) {
                         cell.add(look);
                         let evidence = cell.evidence();
                         let (offset_m, score_q20) = (offset_of(index), evidence.score_q20(looks.seen_q4()));
@@ -322,7 +324,8 @@ impl<'m> Search<'m> {
                         }
                         for error_rad in pose.heading_errors_rad() {
                             checker.turn(&model.node, heading_rad + error_rad, (model.offset(center_m), 2.0 * step_m));
-                            let found = checker.evidence(&offsets_m, &closeness);
+                            let mut found = [Evidence::default(); POSITIONS];
+                            checker.evidence_of_all(&offsets_m, &closeness, &mut found);
                             evidence = Some(evidence.map_or(found, |best| {
                                 core::array::from_fn(|child| best[child].better(found[child], pose.seen_q4))
                             }));
@@ -369,7 +372,7 @@ pub(super) fn agreement_of_look(
         for error_rad in at.heading_errors_rad() {
             let heading_rad = at.heading_rad + pose.heading_error_rad + error_rad;
             checker.turn(&model.node, heading_rad, (model.offset(offset_m), 0.05));
-            best_q20 = best_q20.max(checker.evidence(&[model.offset(offset_m)], &closeness)[0].score_q20(seen_q4));
+            best_q20 = best_q20.max(checker.evidence(model.offset(offset_m), &closeness).score_q20(seen_q4));
         }
     }
     best_q20
