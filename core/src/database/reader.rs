@@ -193,10 +193,8 @@ impl<'a> Node<'a> {
 
     /// Its 3-D segments in the node frame \[m\]: origin at the node at camera height, axes parallel to the world's, z up.
     pub fn segments(&self) -> impl ExactSizeIterator<Item = Segment3> + use<'a> {
-        let point = |mm: [zerocopy::little_endian::I16; 3]| {
-            let [x, y, z] = mm.map(|mm| f32::from(mm.get()) * 0.001);
-            Point3::new(x, y, z)
-        };
+        let metres = |mm: zerocopy::little_endian::I16| f32::from(mm.get()) * 0.001;
+        let point = move |[x, y, z]: [zerocopy::little_endian::I16; 3]| Point3::new(metres(x), metres(y), metres(z));
         self.segments.iter().map(move |entry| Segment3 {
             start: point(entry.start_mm),
             end: point(entry.end_mm),
