@@ -3,9 +3,10 @@
 use super::Evidence;
 use super::channel::{CHANNELS, channel_in_lane};
 use super::distance_planes::DistancePlanes;
+use super::frustum::Frustum;
 use super::image_frame::ImageFrame;
 use super::kept_looks::{KeptLooks, LookPose};
-use super::lanes::{LANES, Lane, LanePart, MAX_POINTS, SegmentEnds, Tables, rounded};
+use super::lanes::{Cameras, LANES, Lane, MAX_POINTS, Tables, any, rounded};
 use super::responses::Responses;
 use super::seen_segment::SeenSegment;
 use super::view::{ViewSegment, turn_model};
@@ -69,11 +70,7 @@ pub(super) struct Checker<'m> {
     responses: Responses,
     frame: ImageFrame,
     filter: SegmentFilter,
-    near_m: f32,
-    /// Slopes of the left and right border of the view.
-    view_slopes: [f32; 2],
-    /// Slopes of the upper and lower border of the view.
-    view_heights: [f32; 2],
+    frustum: Frustum,
     storage: &'m mut [ViewSegment],
     view_count: usize,
     /// Sine and cosine of the heading that the model is turned to.
@@ -89,18 +86,12 @@ impl<'m> Checker<'m> {
         storage: &'m mut [ViewSegment],
     ) -> Self {
         let frame = ImageFrame::new(&rig.camera);
-        let left = frame.center_px[0] / frame.focal_px;
-        let right = (frame.width_px - frame.center_px[0]) / frame.focal_px;
-        let top = frame.center_px[1] / frame.focal_px;
-        let bottom = (frame.height_px - frame.center_px[1]) / frame.focal_px;
         Self {
             planes: DistancePlanes::new(planes),
             responses: Responses::new(),
             frame,
             filter,
-            near_m: rig.near_limit_m,
-            view_slopes: [left, right],
-            view_heights: [top, bottom],
+            frustum: Frustum::new(&frame, rig.near_limit_m),
             storage,
             view_count: 0,
             sin_cos: (0.0, 1.0),
@@ -152,7 +143,7 @@ impl<'m> Checker<'m> {
     pub(super) fn turn(&mut self, node: &Node<'_>, heading_rad: f32, (offset_m, reach_m): ([f32; 2], f32)) {
         self.sin_cos = math::sin_cos(heading_rad);
         let center = self.in_camera(offset_m);
-        self.view_count = turn_model(node, self.sin_cos, self.view_slopes, (center, reach_m), self.storage);
+        self.view_count = turn_model(node, self.sin_cos, self.frustum.sides, (center, reach_m), self.storage);
         for segment in &mut self.storage[..self.view_count] {
             segment.measure(center, self.frame.focal_px);
         }
@@ -187,7 +178,7 @@ impl<'m> Checker<'m> {
             let [right, forward] = self.in_camera(*offset_m);
             (offsets[0][lane], offsets[1][lane]) = (right, forward);
         }
-        run(Batch { checker: self, offsets: &offsets, closeness })
+        run(Batch { checker: self, cameras: &Cameras::new(offsets, self.frustum), closeness })
     }
 
     /// How many points of a segment are looked up, when they are to lie `per_px` to a pixel.
@@ -196,11 +187,7 @@ impl<'m> Checker<'m> {
     }
 
     #[inline(always)]
-    fn evidence_in_lanes<const N: usize>(
-        &self,
-        offsets: &[Lane<f32, N>; 2],
-        closeness: &Closeness,
-    ) -> Lane<Evidence, N> {
+    fn evidence_in_lanes<const N: usize>(&self, cameras: &Cameras<N>, closeness: &Closeness) -> Lane<Evidence, N> {
         let focal = self.frame.focal_px;
         let (position, model) = (focal * closeness.position_m, focal * MODEL_ERROR_M);
         let depth_part = position * position + model * model;
@@ -212,9 +199,9 @@ impl<'m> Checker<'m> {
         let mut explained = [0_i32; N];
         let mut total = [0_i32; N];
         for segment in self.view() {
-            let image = self.project_in_lanes(segment, offsets);
+            let Some(image) = self.project_in_lanes(segment, cameras) else { continue };
             let is_seen = image.is_seen(&self.filter);
-            if !is_seen.iter().fold(false, |any, is_seen| any | is_seen) {
+            if !any(&is_seen) {
                 continue;
             }
             let mut width = [0_u32; N];
@@ -259,37 +246,26 @@ impl<'m> Checker<'m> {
         evidence
     }
 
-    /// Images of a model segment for cameras at `offsets` (right, forward), cut at the near limit and the border.
+    /// Images of a model segment, as far as cameras see it; `None` if none does.
     #[inline(always)]
-    fn project_in_lanes<const N: usize>(&self, segment: &ViewSegment, offsets: &[Lane<f32, N>; 2]) -> LaneImage<N> {
-        let (frame, [left, right]) = (&self.frame, self.view_slopes);
-        let ([start_x, start_y, start_z], [end_x, end_y, end_z]) = (segment.start, segment.end);
-        let (mut x, mut z) = ([[0.0_f32; N]; 2], [[0.0_f32; N]; 2]);
-        for lane in 0..N {
-            x[0][lane] = start_x - offsets[0][lane];
-            x[1][lane] = end_x - offsets[0][lane];
-            z[0][lane] = start_z - offsets[1][lane];
-            z[1][lane] = end_z - offsets[1][lane];
+    fn project_in_lanes<const N: usize>(&self, segment: &ViewSegment, cameras: &Cameras<N>) -> Option<LaneImage<N>> {
+        let (frame, [right, forward]) = (&self.frame, &cameras.offsets);
+        let part = cameras.seen_part(segment.start, segment.end)?;
+        let is_inside = part.is_left();
+        if !any(&is_inside) {
+            return None;
         }
-        let [top, bottom] = self.view_heights;
-        let ends = SegmentEnds { x, y: [start_y, end_y], z };
-        let mut part = LanePart::WHOLE;
-        part.cut(&ends, |_, _, z| z - self.near_m);
-        part.cut(&ends, |x, _, z| x + left * z);
-        part.cut(&ends, |x, _, z| right * z - x);
-        part.cut(&ends, |_, y, z| y + top * z);
-        part.cut(&ends, |_, y, z| bottom * z - y);
-        let LanePart { enter, leave } = part;
-        let SegmentEnds { x, z, .. } = ends;
-        let mut image = LaneImage::EMPTY;
+        let ([start_x, start_y, start_z], [end_x, end_y, end_z]) = (segment.start, segment.end);
+        let mut image = LaneImage { is_inside, ..LaneImage::EMPTY };
         for lane in 0..N {
-            let (way_x, way_y, way_z) = (x[1][lane] - x[0][lane], end_y - start_y, z[1][lane] - z[0][lane]);
-            let (from, to) = (enter[lane], leave[lane]);
-            let start_inverse = 1.0 / (z[0][lane] + way_z * from);
-            let end_inverse = 1.0 / (z[0][lane] + way_z * to);
+            let (x, z) = (start_x - right[lane], start_z - forward[lane]);
+            let (way_x, way_y, way_z) = ((end_x - right[lane]) - x, end_y - start_y, (end_z - forward[lane]) - z);
+            let (from, to) = (part.enter[lane], part.leave[lane]);
+            let start_inverse = 1.0 / (z + way_z * from);
+            let end_inverse = 1.0 / (z + way_z * to);
             let (start_scale, end_scale) = (frame.focal_px * start_inverse, frame.focal_px * end_inverse);
-            let image_start = [(x[0][lane] + way_x * from) * start_scale, (start_y + way_y * from) * start_scale];
-            let image_end = [(x[0][lane] + way_x * to) * end_scale, (start_y + way_y * to) * end_scale];
+            let image_start = [(x + way_x * from) * start_scale, (start_y + way_y * from) * start_scale];
+            let image_end = [(x + way_x * to) * end_scale, (start_y + way_y * to) * end_scale];
             for axis in 0..2 {
                 image.start[axis][lane] = frame.center_px[axis] + image_start[axis];
                 image.way[axis][lane] = image_end[axis] - image_start[axis];
@@ -297,14 +273,13 @@ impl<'m> Checker<'m> {
             let (width, height) = (magnitude(image.way[0][lane]), magnitude(image.way[1][lane]));
             image.length[lane] = octagonal_length(width, height);
             image.inverse_depth[lane] = 0.5 * (start_inverse + end_inverse);
-            image.is_inside[lane] = from < to;
         }
-        image
+        Some(image)
     }
 
     /// Image of a model segment for a camera at `offset_m` (right, forward), cut at the near limit and the border.
     pub(super) fn project(&self, segment: &ViewSegment, offset_m: [f32; 2]) -> Option<Projected> {
-        let (frame, near_m, [left, right]) = (&self.frame, self.near_m, self.view_slopes);
+        let (frame, near_m, [left, right]) = (&self.frame, self.frustum.near_m(), self.frustum.sides);
         let moved = |p: [f32; 3]| [p[0] - offset_m[0], p[1], p[2] - offset_m[1]];
         let (mut start, mut end) = (moved(segment.start), moved(segment.end));
         if start[2] < near_m {
@@ -341,7 +316,7 @@ impl<'m> Checker<'m> {
 /// Poses that are checked together.
 struct Batch<'a, 'm, const N: usize> {
     checker: &'a Checker<'m>,
-    offsets: &'a [Lane<f32, N>; 2],
+    cameras: &'a Cameras<N>,
     closeness: &'a Closeness,
 }
 
@@ -350,7 +325,7 @@ impl<const N: usize> Work for Batch<'_, '_, N> {
 
     #[inline(always)]
     fn run<B: Body>(self, _: B) -> Lane<Evidence, N> {
-        self.checker.evidence_in_lanes(self.offsets, self.closeness)
+        self.checker.evidence_in_lanes(self.cameras, self.closeness)
     }
 }
 

@@ -20,6 +20,7 @@ mod config;
 mod distance_planes;
 mod dominant;
 mod evidence;
+mod frustum;
 mod headings;
 mod hypothesis;
 mod image_frame;

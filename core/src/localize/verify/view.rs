@@ -42,12 +42,11 @@ pub(super) fn turn_model(
         let farthest = math::max(start[2], end[2]) - center_m[1] + reach_m;
         let leftmost = math::min(start[0], end[0]) - center_m[0] - reach_m;
         let rightmost = math::max(start[0], end[0]) - center_m[0] + reach_m;
-        let may_be_seen = farthest > 0.0 && leftmost < right * farthest && rightmost > -left * farthest;
-        if may_be_seen {
-            let Some(place) = storage.get_mut(count) else { break };
-            *place = ViewSegment { start, end, extent_px: 0.0 };
-            count += 1;
-        }
+        let may_be_seen = (farthest > 0.0) & (leftmost < right * farthest) & (rightmost > -left * farthest);
+        // Which will be seen no processor guesses: all are written, and those that count stay.
+        let Some(place) = storage.get_mut(count) else { break };
+        *place = ViewSegment { start, end, extent_px: 0.0 };
+        count += usize::from(may_be_seen);
     }
     count
 }
