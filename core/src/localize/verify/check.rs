@@ -1,12 +1,13 @@
 //! One hypothesis against one look: what the model predicts is looked up in the distance planes.
 
 use super::Evidence;
+use super::cameras::{BATCH, Cameras, SeenPart};
 use super::channel::{CHANNELS, channel_in_lane};
 use super::distance_planes::DistancePlanes;
 use super::frustum::Frustum;
 use super::image_frame::ImageFrame;
 use super::kept_looks::{KeptLooks, LookPose};
-use super::lanes::{Cameras, LANES, Lane, MAX_POINTS, Tables, any, rounded};
+use super::lanes::{LANES, Lane, MAX_POINTS, Tables, any, rounded};
 use super::responses::Responses;
 use super::seen_segment::SeenSegment;
 use super::view::{ViewSegment, turn_model};
@@ -18,8 +19,6 @@ use crate::math;
 
 /// Segments of a node that can be seen from near it at a heading; a node that shows more shows the first so many.
 pub(super) const VIEW_CAPACITY: usize = 384;
-/// Lanes for a batch that leaves half of them idle.
-const HALF: usize = LANES.div_ceil(2);
 /// Tolerance of the prediction apart from the pose \[px\]: lateral shift and the width of edges.
 const FIXED_TOLERANCE_PX: f32 = 6.0;
 /// Error of the model itself \[m\].
@@ -157,28 +156,17 @@ impl<'m> Checker<'m> {
 
     /// Evidence for a camera at `offset_m` from the node, axes of the world.
     pub(super) fn evidence(&self, offset_m: [f32; 2], closeness: &Closeness) -> Evidence {
-        self.evidence_in_batch::<1>(&[offset_m], closeness)[0]
+        let mut found = [Evidence::default()];
+        self.evidence_of_all(&[offset_m], closeness, &mut found);
+        found[0]
     }
 
     /// Evidence for cameras at `offsets_m` from the node, axes of the world, a place in `found` for each.
     pub(super) fn evidence_of_all(&self, offsets_m: &[[f32; 2]], closeness: &Closeness, found: &mut [Evidence]) {
-        for (offsets_m, found) in offsets_m.chunks(LANES).zip(found.chunks_mut(LANES)) {
-            if offsets_m.len() > LANES / 2 {
-                found.copy_from_slice(&self.evidence_in_batch::<LANES>(offsets_m, closeness)[..found.len()]);
-            } else {
-                found.copy_from_slice(&self.evidence_in_batch::<HALF>(offsets_m, closeness)[..found.len()]);
-            }
+        for (offsets_m, found) in offsets_m.chunks(BATCH).zip(found.chunks_mut(BATCH)) {
+            let cameras = Cameras::new(offsets_m.iter().map(|offset_m| self.in_camera(*offset_m)), self.frustum);
+            run(Batch { checker: self, cameras: &cameras, closeness, found });
         }
-    }
-
-    /// Evidence for `N` cameras at most; nothing in the lanes beyond.
-    fn evidence_in_batch<const N: usize>(&self, offsets_m: &[[f32; 2]], closeness: &Closeness) -> Lane<Evidence, N> {
-        let mut offsets = [[0.0; N]; 2];
-        for (lane, offset_m) in offsets_m.iter().enumerate().take(N) {
-            let [right, forward] = self.in_camera(*offset_m);
-            (offsets[0][lane], offsets[1][lane]) = (right, forward);
-        }
-        run(Batch { checker: self, cameras: &Cameras::new(offsets, self.frustum), closeness })
     }
 
     /// How many points of a segment are looked up, when they are to lie `per_px` to a pixel.
@@ -186,77 +174,101 @@ impl<'m> Checker<'m> {
         ((segment.extent_px * per_px + 0.5) as usize).clamp(1, MAX_POINTS)
     }
 
+    /// Evidence for as many cameras as there are places in `found`, `N` at a time.
     #[inline(always)]
-    fn evidence_in_lanes<const N: usize>(&self, cameras: &Cameras<N>, closeness: &Closeness) -> Lane<Evidence, N> {
+    fn evidence_in_lanes<const N: usize>(&self, cameras: &Cameras, closeness: &Closeness, found: &mut [Evidence]) {
         let focal = self.frame.focal_px;
         let (position, model) = (focal * closeness.position_m, focal * MODEL_ERROR_M);
-        let depth_part = position * position + model * model;
         let heading = focal * closeness.heading_rad;
-        let fixed_part = FIXED_TOLERANCE_PX * FIXED_TOLERANCE_PX + heading * heading;
+        let tolerance = Tolerance {
+            fixed_part: FIXED_TOLERANCE_PX * FIXED_TOLERANCE_PX + heading * heading,
+            depth_part: position * position + model * model,
+        };
         let per_px = 1.0 / closeness.spacing_px;
-        let tables = Tables { planes: self.planes.all(), responses: self.responses.tables() };
-        let backgrounds = self.responses.backgrounds();
-        let mut explained = [0_i32; N];
-        let mut total = [0_i32; N];
+        let mut explained = [0_i32; BATCH];
+        let mut total = [0_i32; BATCH];
         for segment in self.view() {
-            let Some(image) = self.project_in_lanes(segment, cameras) else { continue };
-            let is_seen = image.is_seen(&self.filter);
-            if !any(&is_seen) {
-                continue;
-            }
-            let mut width = [0_u32; N];
-            let mut channel = [0_u32; N];
-            let mut background = [0_i32; N];
-            let mut weight = [0_i32; N];
-            for lane in 0..N {
-                let tolerance = fixed_part + depth_part * image.inverse_depth[lane] * image.inverse_depth[lane];
-                width[lane] =
-                    u32::from(tolerance > 100.0) + u32::from(tolerance > 400.0) + u32::from(tolerance > 1600.0);
-                channel[lane] = channel_in_lane(image.way[0][lane], image.way[1][lane]);
-            }
+            let Some(planes) = cameras.planes_across(segment.start, segment.end) else { continue };
             let count = Self::point_count(segment, per_px);
-            let share = 0.25 * POINT_SHARES[count];
-            let mut first = [[0.0; N]; 2];
-            let mut step = [[0.0; N]; 2];
-            for axis in 0..2 {
-                for lane in 0..N {
-                    step[axis][lane] = image.way[axis][lane] * share;
-                    first[axis][lane] = image.start[axis][lane] * 0.25 + 0.5 * step[axis][lane];
+            for first in (0..found.len()).step_by(N) {
+                let offsets = cameras.offsets::<N>(first);
+                let part = cameras.seen_part((segment.start, segment.end), &offsets, planes);
+                if !any(&part.is_any()) {
+                    continue;
+                }
+                let image = self.project_in_lanes(segment, &offsets, &part);
+                let is_seen = image.is_seen(&self.filter);
+                if any(&is_seen) {
+                    let [more_explained, more] = self.evidence_of_segment(&image, &is_seen, &tolerance, count);
+                    for lane in 0..N {
+                        explained[(first + lane) % BATCH] += more_explained[lane];
+                        total[(first + lane) % BATCH] += more[lane];
+                    }
                 }
             }
-            for lane in 0..N {
-                let (channel, width) = (channel[lane] as usize & (CHANNELS - 1), width[lane] as usize & 3);
-                background[lane] = i32::from(backgrounds[channel][width]);
-                let length_q4 = if is_seen[lane] { rounded(image.length[lane] * 16.0) } else { 0 };
-                weight[lane] = (length_q4 * WEIGHTS_Q8[width]) >> 8;
-            }
-            let sum = tables.sum(count, (first, step), &channel, &width);
-            let share_q16 = POINT_SHARES_Q16[count];
-            for lane in 0..N {
-                // At most 16,384 x 255: far from the border of i32.
-                let mean = (sum[lane] * share_q16) >> 16;
-                explained[lane] += (weight[lane] * (mean - background[lane]) + 128) >> 8;
-                total[lane] += (weight[lane] * (255 - background[lane]) + 128) >> 8;
-            }
         }
-        let mut evidence = [Evidence::default(); N];
-        for lane in 0..N {
-            evidence[lane] = Evidence { explained_q4: explained[lane], total_q4: total[lane] };
+        for (index, found) in found.iter_mut().enumerate().take(BATCH) {
+            *found = Evidence { explained_q4: explained[index], total_q4: total[index] };
         }
-        evidence
     }
 
-    /// Images of a model segment, as far as cameras see it; `None` if none does.
+    /// What a segment explains and what it would at most, in Q4 px.
     #[inline(always)]
-    fn project_in_lanes<const N: usize>(&self, segment: &ViewSegment, cameras: &Cameras<N>) -> Option<LaneImage<N>> {
-        let (frame, [right, forward]) = (&self.frame, &cameras.offsets);
-        let part = cameras.seen_part(segment.start, segment.end)?;
-        let is_inside = part.is_left();
-        if !any(&is_inside) {
-            return None;
+    fn evidence_of_segment<const N: usize>(
+        &self,
+        image: &LaneImage<N>,
+        is_seen: &Lane<bool, N>,
+        tolerance: &Tolerance,
+        count: usize,
+    ) -> [Lane<i32, N>; 2] {
+        let mut width = [0_u32; N];
+        let mut channel = [0_u32; N];
+        let mut background = [0_i32; N];
+        let mut weight = [0_i32; N];
+        for lane in 0..N {
+            width[lane] = tolerance.width(image.inverse_depth[lane]);
+            channel[lane] = channel_in_lane(image.way[0][lane], image.way[1][lane]);
         }
+        let share = 0.25 * POINT_SHARES[count];
+        let mut first = [[0.0; N]; 2];
+        let mut step = [[0.0; N]; 2];
+        for axis in 0..2 {
+            for lane in 0..N {
+                step[axis][lane] = image.way[axis][lane] * share;
+                first[axis][lane] = image.start[axis][lane] * 0.25 + 0.5 * step[axis][lane];
+            }
+        }
+        let backgrounds = self.responses.backgrounds();
+        for lane in 0..N {
+            let (channel, width) = (channel[lane] as usize & (CHANNELS - 1), width[lane] as usize & 3);
+            background[lane] = i32::from(backgrounds[channel][width]);
+            let length_q4 = if is_seen[lane] { rounded(image.length[lane] * 16.0) } else { 0 };
+            weight[lane] = (length_q4 * WEIGHTS_Q8[width]) >> 8;
+        }
+        let tables = Tables { planes: self.planes.all(), responses: self.responses.tables() };
+        let sum = tables.sum(count, (first, step), &channel, &width);
+        let share_q16 = POINT_SHARES_Q16[count];
+        let (mut explained, mut total) = ([0; N], [0; N]);
+        for lane in 0..N {
+            // At most 16,384 x 255: far from the border of i32.
+            let mean = (sum[lane] * share_q16) >> 16;
+            explained[lane] = (weight[lane] * (mean - background[lane]) + 128) >> 8;
+            total[lane] = (weight[lane] * (255 - background[lane]) + 128) >> 8;
+        }
+        [explained, total]
+    }
+
+    /// Images of the seen parts of a model segment for cameras at `offsets` (right, forward).
+    #[inline(always)]
+    fn project_in_lanes<const N: usize>(
+        &self,
+        segment: &ViewSegment,
+        [right, forward]: &[Lane<f32, N>; 2],
+        part: &SeenPart<N>,
+    ) -> LaneImage<N> {
+        let frame = &self.frame;
         let ([start_x, start_y, start_z], [end_x, end_y, end_z]) = (segment.start, segment.end);
-        let mut image = LaneImage { is_inside, ..LaneImage::EMPTY };
+        let mut image = LaneImage { is_inside: part.is_any(), ..LaneImage::EMPTY };
         for lane in 0..N {
             let (x, z) = (start_x - right[lane], start_z - forward[lane]);
             let (way_x, way_y, way_z) = ((end_x - right[lane]) - x, end_y - start_y, (end_z - forward[lane]) - z);
@@ -274,7 +286,7 @@ impl<'m> Checker<'m> {
             image.length[lane] = octagonal_length(width, height);
             image.inverse_depth[lane] = 0.5 * (start_inverse + end_inverse);
         }
-        Some(image)
+        image
     }
 
     /// Image of a model segment for a camera at `offset_m` (right, forward), cut at the near limit and the border.
@@ -313,19 +325,46 @@ impl<'m> Checker<'m> {
     }
 }
 
-/// Poses that are checked together.
-struct Batch<'a, 'm, const N: usize> {
-    checker: &'a Checker<'m>,
-    cameras: &'a Cameras<N>,
-    closeness: &'a Closeness,
+/// What the image of a model segment may be off, by the uncertainty of the pose \[px^2\].
+#[derive(Debug)]
+struct Tolerance {
+    fixed_part: f32,
+    /// Of a segment a metre away.
+    depth_part: f32,
 }
 
-impl<const N: usize> Work for Batch<'_, '_, N> {
-    type Output = Lane<Evidence, N>;
+impl Tolerance {
+    /// The width of the response to a segment.
+    #[inline(always)]
+    fn width(&self, inverse_depth: f32) -> u32 {
+        let tolerance = self.fixed_part + self.depth_part * inverse_depth * inverse_depth;
+        u32::from(tolerance > 100.0) + u32::from(tolerance > 400.0) + u32::from(tolerance > 1600.0)
+    }
+}
+
+/// Poses that are checked together.
+struct Batch<'a, 'm> {
+    checker: &'a Checker<'m>,
+    cameras: &'a Cameras,
+    closeness: &'a Closeness,
+    found: &'a mut [Evidence],
+}
+
+impl Work for Batch<'_, '_> {
+    type Output = ();
 
     #[inline(always)]
-    fn run<B: Body>(self, _: B) -> Lane<Evidence, N> {
-        self.checker.evidence_in_lanes(self.cameras, self.closeness)
+    fn run<B: Body>(self, _: B) {
+        /// Lanes that leave few idle where there are few cameras.
+        const HALF: usize = LANES.div_ceil(2);
+        let Self { checker, cameras, closeness, found } = self;
+        if found.len() == 1 {
+            checker.evidence_in_lanes::<1>(cameras, closeness, found);
+        } else if found.len() <= HALF {
+            checker.evidence_in_lanes::<HALF>(cameras, closeness, found);
+        } else {
+            checker.evidence_in_lanes::<LANES>(cameras, closeness, found);
+        }
     }
 }
 
@@ -351,12 +390,14 @@ impl<const N: usize> LaneImage<N> {
     /// In which lanes the segment is in view, long enough and not near-horizontal.
     #[inline(always)]
     fn is_seen(&self, filter: &SegmentFilter) -> Lane<bool, N> {
-        core::array::from_fn(|lane| {
+        let mut is_seen = [false; N];
+        for lane in 0..N {
             let (width, height) = (magnitude(self.way[0][lane]), magnitude(self.way[1][lane]));
-            self.is_inside[lane]
+            is_seen[lane] = self.is_inside[lane]
                 & (self.length[lane] >= filter.min_length_px)
-                & (height >= filter.horizontal_slope * width)
-        })
+                & (height >= filter.horizontal_slope * width);
+        }
+        is_seen
     }
 }
 

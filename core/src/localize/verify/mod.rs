@@ -12,6 +12,7 @@
 //! Sums are integers. Projection is plain IEEE single precision in source order, without a function that machines
 //! round differently.
 
+mod cameras;
 mod chamfer;
 mod channel;
 mod check;

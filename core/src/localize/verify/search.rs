@@ -1,5 +1,6 @@
 //! From coarse to close: the grid about every node, then ever closer poses about the best of it.
 
+use super::cameras::BATCH;
 use super::check::{Checker, Closeness};
 use super::dominant::DominantDirection;
 use super::evidence::CellEvidence;
@@ -15,8 +16,6 @@ use super::{Evidence, VerificationConfig};
 use crate::database::TopologicalDatabase;
 use crate::math;
 
-/// Cells that are checked at a time.
-const BATCH: usize = 16;
 /// Positions tried along either side of the square about a hypothesis.
 const SIDE: usize = 4;
 /// Poses tried about a hypothesis at a heading.

@@ -1,0 +1,144 @@
+//! Cameras beside a node that are checked together: which parts of a segment each of them sees.
+
+use super::frustum::Frustum;
+use super::lanes::Lane;
+use crate::math;
+
+/// Cameras that are checked together at most.
+pub(super) const BATCH: usize = 16;
+/// Farther than this from a plane all cameras agree on which side a point lies, whatever is rounded; in the plane's unit.
+const MARGIN: f32 = 1e-3;
+
+/// Cameras in one frame, that of the turned model, which look along its axis.
+#[derive(Debug)]
+pub(super) struct Cameras {
+    /// To the right and forward \[m\]; those beyond the count stand with the first.
+    offsets: [[f32; BATCH]; 2],
+    frustum: Frustum,
+    /// The least and the most that a camera's place moves a point towards the inner side of each plane.
+    reaches: [[f32; 2]; Frustum::PLANES],
+}
+
+/// Planes that cut a segment for some of the cameras.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct CutPlanes(u8);
+
+impl Cameras {
+    /// Those at `offsets_m` to the right and forward, [`BATCH`] of them at most.
+    pub(super) fn new(offsets_m: impl Iterator<Item = [f32; 2]> + Clone, frustum: Frustum) -> Self {
+        let [right, forward] = offsets_m.clone().next().unwrap_or_default();
+        let mut offsets = [[right; BATCH], [forward; BATCH]];
+        for (index, [right, forward]) in offsets_m.enumerate().take(BATCH) {
+            (offsets[0][index], offsets[1][index]) = (right, forward);
+        }
+        let mut cameras = Self { offsets, frustum, reaches: [[0.0; 2]; Frustum::PLANES] };
+        cameras.reaches = [
+            cameras.reach::<0>(),
+            cameras.reach::<1>(),
+            cameras.reach::<2>(),
+            cameras.reach::<3>(),
+            cameras.reach::<4>(),
+        ];
+        cameras
+    }
+
+    fn reach<const PLANE: usize>(&self) -> [f32; 2] {
+        let [right, forward] = &self.offsets;
+        let still = self.frustum.inside::<PLANE>([0.0; 3]);
+        let moved = |index: usize| self.frustum.inside::<PLANE>([-right[index], 0.0, -forward[index]]) - still;
+        let reach = |[least, most]: [f32; 2], index| [math::min(least, moved(index)), math::max(most, moved(index))];
+        (0..BATCH).fold([f32::INFINITY, f32::NEG_INFINITY], reach)
+    }
+
+    /// To the right and forward, of `N` cameras from the `first` on \[m\].
+    #[inline(always)]
+    pub(super) fn offsets<const N: usize>(&self, first: usize) -> [Lane<f32, N>; 2] {
+        let first = first.min(BATCH - N);
+        let mut offsets = [[0.0; N]; 2];
+        for axis in 0..2 {
+            for lane in 0..N {
+                offsets[axis][lane] = self.offsets[axis][first + lane];
+            }
+        }
+        offsets
+    }
+
+    /// At which planes a segment is to be cut; `None` if no camera sees any of it.
+    #[inline(always)]
+    pub(super) fn planes_across(&self, start: [f32; 3], end: [f32; 3]) -> Option<CutPlanes> {
+        let planes = self.plane_across::<0>(start, end)?
+            | self.plane_across::<1>(start, end)?
+            | self.plane_across::<2>(start, end)?
+            | self.plane_across::<3>(start, end)?
+            | self.plane_across::<4>(start, end)?;
+        Some(CutPlanes(planes))
+    }
+
+    #[inline(always)]
+    fn plane_across<const PLANE: usize>(&self, start: [f32; 3], end: [f32; 3]) -> Option<u8> {
+        let [least, most] = self.reaches[PLANE];
+        let (from, to) = (self.frustum.inside::<PLANE>(start), self.frustum.inside::<PLANE>(end));
+        let is_outside = (from + most < -MARGIN) & (to + most < -MARGIN);
+        let is_inside = (from + least > MARGIN) & (to + least > MARGIN);
+        (!is_outside).then_some(u8::from(!is_inside) << PLANE)
+    }
+
+    /// Which part of a segment the cameras at `offsets` see.
+    #[inline(always)]
+    pub(super) fn seen_part<const N: usize>(
+        &self,
+        (start, end): ([f32; 3], [f32; 3]),
+        offsets: &[Lane<f32, N>; 2],
+        planes: CutPlanes,
+    ) -> SeenPart<N> {
+        let mut part = SeenPart { enter: [0.0; N], leave: [1.0; N] };
+        self.cut::<0, N>((start, end), offsets, planes, &mut part);
+        self.cut::<1, N>((start, end), offsets, planes, &mut part);
+        self.cut::<2, N>((start, end), offsets, planes, &mut part);
+        self.cut::<3, N>((start, end), offsets, planes, &mut part);
+        self.cut::<4, N>((start, end), offsets, planes, &mut part);
+        part
+    }
+
+    #[inline(always)]
+    fn cut<const PLANE: usize, const N: usize>(
+        &self,
+        (start, end): ([f32; 3], [f32; 3]),
+        [right, forward]: &[Lane<f32, N>; 2],
+        CutPlanes(planes): CutPlanes,
+        part: &mut SeenPart<N>,
+    ) {
+        if planes & (1 << PLANE) == 0 {
+            return;
+        }
+        for lane in 0..N {
+            let inside = |[x, y, z]: [f32; 3]| self.frustum.inside::<PLANE>([x - right[lane], y, z - forward[lane]]);
+            let (from, to) = (inside(start), inside(end));
+            let at = from / (from - to);
+            let (enter, leave) = (part.enter[lane], part.leave[lane]);
+            let later = if (from < 0.0) & (at > enter) { at } else { enter };
+            part.enter[lane] = if (from < 0.0) & (to < 0.0) { 2.0 } else { later };
+            part.leave[lane] = if (to < 0.0) & (at < leave) { at } else { leave };
+        }
+    }
+}
+
+/// Which part of a segment is seen, in shares of the way from its start to its end; none, where `enter` is not below
+/// `leave`.
+#[derive(Debug)]
+pub(super) struct SeenPart<const N: usize> {
+    pub(super) enter: Lane<f32, N>,
+    pub(super) leave: Lane<f32, N>,
+}
+
+impl<const N: usize> SeenPart<N> {
+    /// In which lanes anything is seen.
+    #[inline(always)]
+    pub(super) fn is_any(&self) -> Lane<bool, N> {
+        let mut is_any = [false; N];
+        for lane in 0..N {
+            is_any[lane] = self.enter[lane] < self.leave[lane];
+        }
+        is_any
+    }
+}
