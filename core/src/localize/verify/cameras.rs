@@ -54,13 +54,13 @@ impl Cameras {
     #[inline(always)]
     pub(super) fn offsets<const N: usize>(&self, first: usize) -> [Lane<f32, N>; 2] {
         let first = first.min(BATCH - N);
-        let mut offsets = [[0.0; N]; 2];
-        for axis in 0..2 {
-            for lane in 0..N {
-                offsets[axis][lane] = self.offsets[axis][first + lane];
-            }
-        }
-        offsets
+        let lanes = |all: &[f32; BATCH]| {
+            let mut lanes = [0.0; N];
+            lanes.copy_from_slice(&all[first..first + N]);
+            lanes
+        };
+        let [right, forward] = &self.offsets;
+        [lanes(right), lanes(forward)]
     }
 
     /// At which planes a segment is to be cut; `None` if no camera sees any of it.
@@ -136,8 +136,8 @@ impl<const N: usize> SeenPart<N> {
     #[inline(always)]
     pub(super) fn is_any(&self) -> Lane<bool, N> {
         let mut is_any = [false; N];
-        for lane in 0..N {
-            is_any[lane] = self.enter[lane] < self.leave[lane];
+        for (lane, is_any) in is_any.iter_mut().enumerate() {
+            *is_any = self.enter[lane] < self.leave[lane];
         }
         is_any
     }

@@ -391,9 +391,9 @@ impl<const N: usize> LaneImage<N> {
     #[inline(always)]
     fn is_seen(&self, filter: &SegmentFilter) -> Lane<bool, N> {
         let mut is_seen = [false; N];
-        for lane in 0..N {
+        for (lane, is_seen) in is_seen.iter_mut().enumerate() {
             let (width, height) = (magnitude(self.way[0][lane]), magnitude(self.way[1][lane]));
-            is_seen[lane] = self.is_inside[lane]
+            *is_seen = self.is_inside[lane]
                 & (self.length[lane] >= filter.min_length_px)
                 & (height >= filter.horizontal_slope * width);
         }

@@ -26,6 +26,8 @@ pub(super) struct LookPose {
     pub(super) way_m: [f32; 2],
     /// Standard deviation of the heading beside that of the first look \[rad\].
     pub(super) heading_spread_rad: f32,
+    /// What the heading is off beside that of the first look, as it was fitted \[rad\].
+    pub(super) drift_rad: f32,
     /// Standard deviation of the way, along either axis \[m\].
     pub(super) way_spread_m: f32,
     pub(super) segments_end: u32,
@@ -152,6 +154,13 @@ impl<'m> KeptLooks<'m> {
         self.poses.get(look).copied().unwrap_or_default()
     }
 
+    /// Corrects what the heading of a look is off beside that of the first.
+    pub(super) fn drift(&mut self, look: usize, by_rad: f32) {
+        if let Some(pose) = self.poses.get_mut(look) {
+            pose.drift_rad += by_rad;
+        }
+    }
+
     /// Length of the segments of a look in Q4 px.
     pub(super) fn seen_q4_in(&self, look: usize) -> i32 {
         self.pose(look).seen_q4
@@ -221,7 +230,7 @@ impl<'m> KeptLooks<'m> {
         };
         let motion = motion.filter(|motion| motion.step_m.is_finite());
         self.has_odometry = motion.is_some();
-        let mut next = LookPose { heading_spread_rad: 0.5, ..last };
+        let mut next = LookPose { heading_spread_rad: 0.5, drift_rad: 0.0, ..last };
         if let Some(motion) = motion {
             let (sin, cos) = math::sin_cos(last.heading_rad);
             let Point2 { x: forward, y: left } = motion.step_m;

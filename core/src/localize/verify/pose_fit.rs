@@ -1,7 +1,9 @@
 //! The metric pose with its covariance: model segments laid onto the seen ones, by least squares.
 //!
 //! Each model segment that finds a seen one near it, alike in direction, is one measurement of the distance across it
-//! (its points share the lateral shift of the edge). Five rounds of Gauss and Newton with weights after Cauchy.
+//! (its points share the lateral shift of the edge). Five rounds of Gauss and Newton with weights after Cauchy. What the
+//! heading of each look is off beside the first one's, for odometry drifts, is fitted along with the pose and eliminated
+//! look by look (Schur's complement).
 
 use super::check::{Checker, Projected};
 use super::hypothesis::Hypothesis;
@@ -21,44 +23,49 @@ const MAX_SINE: f32 = 0.12;
 /// A pose that moves farther than this was no fit \[m\].
 const MAX_MOVE_M: f32 = 0.15;
 
-/// A pose and its covariance: x, y \[m\] and heading \[rad\].
+/// A pose at the first look and its covariance: x, y \[m\] and heading \[rad\].
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FittedPose {
     pub(super) offset_m: [f32; 2],
     pub(super) heading_error_rad: f32,
-    pub(super) covariance: [[f32; 3]; 3],
+    covariance: [[f32; 3]; 3],
+    /// How the last look's drift depends on the pose.
+    last: Drift,
 }
 
 impl FittedPose {
-    /// The covariance of the pose at a look: that at the first, carried along the way, and what odometry adds.
-    pub(super) fn covariance_at(&self, look: &LookPose) -> [[f32; 3]; 3] {
-        let [x, y] = look.way_m_if(self.heading_error_rad);
-        let arm = [-y, x, 0.0];
-        let first = &self.covariance;
-        let mut at = *first;
-        for row in 0..3 {
-            for column in 0..3 {
-                at[row][column] +=
-                    arm[row] * first[2][column] + first[row][2] * arm[column] + arm[row] * first[2][2] * arm[column];
-            }
+    /// The covariance of the pose at the last look: that at the first, carried along the way, and what odometry adds.
+    pub(super) fn covariance_at(&self, last: &LookPose) -> [[f32; 3]; 3] {
+        let [x, y] = last.way_m_if(self.heading_error_rad);
+        let Drift { variance, slope, .. } = self.last;
+        let by_pose = slope.map(|slope| -variance * slope);
+        let carried = [[1.0, 0.0, -y], [0.0, 1.0, x], [by_pose[0], by_pose[1], 1.0 + by_pose[2]]];
+        let half = carried.map(|row| [0, 1, 2].map(|column: usize| dot(row, self.covariance[column])));
+        let mut covariance = half.map(|row| [0, 1, 2].map(|column: usize| dot(row, carried[column])));
+        let added = [last.way_spread_m * last.way_spread_m, last.way_spread_m * last.way_spread_m, variance];
+        for (axis, added) in added.into_iter().enumerate() {
+            covariance[axis][axis] += added;
         }
-        let (way, heading) = (look.way_spread_m, look.heading_spread_rad);
-        (at[0][0], at[1][1], at[2][2]) = (at[0][0] + way * way, at[1][1] + way * way, at[2][2] + heading * heading);
-        at
+        covariance
     }
 }
 
-/// Fits the pose of `hypothesis` to all looks.
+fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// Fits the pose of `hypothesis` to all looks, and what each of their headings drifted beside the first.
 pub(super) fn fit(
     hypothesis: &Hypothesis,
     database: &TopologicalDatabase<'_>,
     checker: &mut Checker<'_>,
-    looks: &KeptLooks<'_>,
+    looks: &mut KeptLooks<'_>,
 ) -> FittedPose {
     let mut pose = FittedPose {
         offset_m: hypothesis.offset_m,
         heading_error_rad: hypothesis.heading_error_rad,
         covariance: [[0.0; 3]; 3],
+        last: Drift::default(),
     };
     for gate_px in GATES_PX {
         let mut normal = Normal::prior(looks.compass_spread_rad(), pose.heading_error_rad);
@@ -66,8 +73,12 @@ pub(super) fn fit(
             let (Some(node), at) = (database.node(hypothesis.node()), looks.pose(look)) else { continue };
             let way_m = at.way_m_if(pose.heading_error_rad);
             let offset_m = [pose.offset_m[0] + way_m[0], pose.offset_m[1] + way_m[1]];
-            checker.turn(&node, at.heading_rad + pose.heading_error_rad, (offset_m, 0.05));
-            normal.add_look(checker, (offset_m, way_m), looks.segments(look), gate_px);
+            checker.turn(&node, at.heading_rad + at.drift_rad + pose.heading_error_rad, (offset_m, 0.05));
+            let mut drift = Drift::prior(&at);
+            normal.add_look(checker, (offset_m, way_m), looks.segments(look), gate_px, &mut drift);
+            let drifted_rad = normal.eliminate(&mut drift);
+            looks.drift(look, drifted_rad);
+            pose.last = drift;
         }
         let Some((step, covariance)) = normal.solve() else { return pose };
         pose.offset_m = [pose.offset_m[0] + step[0], pose.offset_m[1] + step[1]];
@@ -78,8 +89,44 @@ pub(super) fn fit(
     if moved > MAX_MOVE_M {
         pose.offset_m = hypothesis.offset_m;
         pose.heading_error_rad = hypothesis.heading_error_rad;
+        for look in 0..looks.count() {
+            looks.drift(look, -looks.pose(look).drift_rad);
+        }
     }
     pose
+}
+
+/// What one look says of its drift: the part of the normal equations that no other look shares.
+#[derive(Debug, Clone, Copy, Default)]
+struct Drift {
+    square: f32,
+    /// Products with the step of the pose.
+    slope: [f32; 3],
+    right: f32,
+    /// Of the drift, were the pose known: once it is eliminated \[rad^2\].
+    variance: f32,
+}
+
+impl Drift {
+    /// As odometry has it.
+    fn prior(at: &LookPose) -> Self {
+        let weight = weight_of(at.heading_spread_rad);
+        Self { square: weight, right: -at.drift_rad * weight, ..Self::default() }
+    }
+
+    fn add(&mut self, measurement: &Measurement, by_heading: f32) {
+        let Measurement { slope, distance_px, weight } = measurement;
+        self.square += weight * by_heading * by_heading;
+        for (sum, slope) in self.slope.iter_mut().zip(slope) {
+            *sum += weight * by_heading * slope;
+        }
+        self.right -= weight * by_heading * distance_px;
+    }
+}
+
+/// The weight of what is known with a standard deviation.
+fn weight_of(spread_rad: f32) -> f32 {
+    1.0 / math::max(spread_rad * spread_rad, 1e-10)
 }
 
 /// Normal equations of the step (x, y, heading).
@@ -92,8 +139,7 @@ struct Normal {
 impl Normal {
     /// The position known to half a metre, the heading as the compass has it, if there is one.
     fn prior(compass_spread_rad: Option<f32>, heading_error_rad: f32) -> Self {
-        let weight = |spread_rad: f32| 1.0 / math::max(spread_rad * spread_rad, 1e-10);
-        let heading_weight = compass_spread_rad.map_or(0.0, weight);
+        let heading_weight = compass_spread_rad.map_or(0.0, weight_of);
         Self {
             matrix: [[4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, heading_weight]],
             right: [0.0, 0.0, -heading_error_rad * heading_weight],
@@ -107,6 +153,7 @@ impl Normal {
         (offset_m, way_m): ([f32; 2], [f32; 2]),
         seen: &[SeenSegment],
         gate_px: f32,
+        drift: &mut Drift,
     ) {
         let offset = checker.in_camera(offset_m);
         for segment in checker.view() {
@@ -115,8 +162,21 @@ impl Normal {
                 let [by_x, by_y, by_heading] = measurement.slope;
                 measurement.slope[2] = by_heading + by_y * way_m[0] - by_x * way_m[1];
                 self.add(&measurement);
+                drift.add(&measurement, by_heading);
             }
         }
+    }
+
+    /// Leaves the drift of a look to its best for any pose; returns that for the pose as it is \[rad\].
+    fn eliminate(&mut self, drift: &mut Drift) -> f32 {
+        drift.variance = 1.0 / drift.square;
+        for row in 0..3 {
+            for column in 0..3 {
+                self.matrix[row][column] -= drift.variance * drift.slope[row] * drift.slope[column];
+            }
+            self.right[row] -= drift.variance * drift.slope[row] * drift.right;
+        }
+        drift.variance * drift.right
     }
 
     fn add(&mut self, measurement: &Measurement) {

@@ -189,12 +189,12 @@ impl<'m> VerifyingLocalizer<'m> {
     /// The answer: the pose at the last look, and the node nearest to it.
     fn localized(&mut self, judgement: &Judgement) -> Localized {
         let best = &judgement.best;
-        let fitted = fit(best, &self.database, &mut self.checker, &self.looks);
+        let fitted = fit(best, &self.database, &mut self.checker, &mut self.looks);
         let last = self.looks.pose(self.looks.count().saturating_sub(1));
         let from = self.database.node(best.node()).map_or(Point2::default(), |node| node.position());
         let way_m = last.way_m_if(fitted.heading_error_rad);
         let position = Point2::new(from.x + fitted.offset_m[0] + way_m[0], from.y + fitted.offset_m[1] + way_m[1]);
-        let heading = Heading::new(Angle::from_radians(last.heading_rad + fitted.heading_error_rad));
+        let heading = Heading::new(Angle::from_radians(last.heading_rad + last.drift_rad + fitted.heading_error_rad));
         let pose =
             PoseEstimate { position, heading: heading.unwrap_or_default(), covariance: fitted.covariance_at(&last) };
         let node = nearest_node(&self.database, position).map(|node| node.id()).unwrap_or_default();
