@@ -41,6 +41,7 @@ fn the_committed_vectors_are_what_is_made_today() {
         assert!(old == new, "there are more or fewer golden answers than committed; {remedy}");
     }
     assert!(committed.map == made.map, "the golden map changed; {remedy}");
+    assert!(committed.joined_map == made.joined_map, "the golden joined map changed; {remedy}");
     assert!(committed.looks == made.looks, "the golden looks changed; {remedy}");
 }
 

@@ -4,6 +4,9 @@
 pub static MAP: [u8; include_bytes!("../../../tests/fixtures/golden/office.map").len()] =
     *include_bytes!("../../../tests/fixtures/golden/office.map");
 
+/// The same nodes as the verifying localizer's maps have them: the pieces of an edge joined, the models within a budget.
+pub static JOINED_MAP: &[u8] = include_bytes!("../../../tests/fixtures/golden/joined.map");
+
 /// What robots saw.
 pub static LOOKS: &[u8] = include_bytes!("../../../tests/fixtures/golden/looks.bin");
 

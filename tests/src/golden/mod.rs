@@ -2,6 +2,7 @@
 //!
 //! Files in `tests/fixtures/golden/`: a map of a few nodes of the generated office, the looks of some hundred
 //! attempts in it ([`edgeloc_firmware::looks`]), and one line of text for each look with the decision and all scores.
+//! `joined.map` has the same nodes as the verifying localizer's preset learns them; instructions are counted on it.
 //! `kernels.txt` holds what the [kernels](edgeloc_firmware::run_kernels) make of drawn inputs. Boards hold all of these in
 //! flash and compare; a test holds them against what is made today. The last, `learned.txt`, pins what robots
 //! [learn](learned()) by themselves, on the host alone.
@@ -23,6 +24,8 @@ pub use learned::learned;
 pub struct Golden {
     /// Bytes of the topological database.
     pub map: Vec<u8>,
+    /// Bytes of the database of the same nodes, as the verifying localizer's maps are learned.
+    pub joined_map: Vec<u8>,
     /// Bytes of the looks.
     pub looks: Vec<u8>,
     /// A line for each look.
@@ -52,7 +55,7 @@ impl Golden {
             kernels.push_str(line);
             kernels.push('\n');
         });
-        Self { map, looks, expected, kernels, learned: learned() }
+        Self { map, joined_map: site.learn_joined(), looks, expected, kernels, learned: learned() }
     }
 
     /// Reads the committed ones.
@@ -60,9 +63,10 @@ impl Golden {
     /// # Errors
     /// When a file is missing or can't be read.
     pub fn load() -> io::Result<Self> {
-        let [map, looks, expected, kernels, learned] = Self::paths();
+        let [map, joined_map, looks, expected, kernels, learned] = Self::paths();
         Ok(Self {
             map: fs::read(map)?,
+            joined_map: fs::read(joined_map)?,
             looks: fs::read(looks)?,
             expected: fs::read_to_string(expected)?,
             kernels: fs::read_to_string(kernels)?,
@@ -75,16 +79,18 @@ impl Golden {
     /// # Errors
     /// When a file can't be written.
     pub fn save(&self) -> io::Result<()> {
-        let [map, looks, expected, kernels, learned] = Self::paths();
+        let [map, joined_map, looks, expected, kernels, learned] = Self::paths();
         fs::write(kernels, &self.kernels)?;
         fs::write(learned, &self.learned)?;
         fs::write(map, &self.map)?;
+        fs::write(joined_map, &self.joined_map)?;
         fs::write(looks, &self.looks)?;
         fs::write(expected, &self.expected)
     }
 
-    fn paths() -> [PathBuf; 5] {
+    fn paths() -> [PathBuf; 6] {
         let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/fixtures/golden"));
-        ["office.map", "looks.bin", "expected.txt", "kernels.txt", "learned.txt"].map(|name| folder.join(name))
+        ["office.map", "joined.map", "looks.bin", "expected.txt", "kernels.txt", "learned.txt"]
+            .map(|name| folder.join(name))
     }
 }

@@ -17,6 +17,8 @@ const SEED: u64 = 20;
 const NODE_COUNT: usize = 10;
 /// Views learned at each node.
 const VIEW_COUNT: u16 = 12;
+/// Segments of a node's joined model at most.
+const MAX_SEGMENTS: usize = 700;
 /// Greatest distance of a near start from its node, along each axis \[m\].
 const NEAR_M: f64 = 0.2;
 
@@ -67,6 +69,18 @@ impl Site {
         let views = NodeViews::observe_all(&self.rig, &self.world, &self.occluders, &self.nodes, VIEW_COUNT);
         let robot = CalibratedRig::exact(self.rig);
         learning::learn(&robot, &views, &Sources::default(), SEED, 0).expect("an office fits the format")
+    }
+
+    /// The map of the nodes as the verifying localizer's preset has it learned: joined, and within its budget.
+    pub(super) fn learn_joined(&self) -> Vec<u8> {
+        let views = NodeViews::observe_all(&self.rig, &self.world, &self.occluders, &self.nodes, VIEW_COUNT);
+        let robot = CalibratedRig::exact(self.rig);
+        let mut learned = learning::learn_nodes(&robot, &views, &Sources::default(), SEED, 0);
+        for node in &mut learned {
+            node.segments = learning::join_collinear(&self.rig, &node.segments);
+            learning::keep_most_telling(&mut node.segments, MAX_SEGMENTS);
+        }
+        learning::write_map(&robot, VIEW_COUNT, &learned).expect("an office fits the format")
     }
 
     /// What a robot sees in `count` looks, turning by `turn` between them, with a perfect compass and without odometry;

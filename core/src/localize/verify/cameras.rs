@@ -15,7 +15,9 @@ pub(super) struct Cameras {
     /// To the right and forward \[m\]; those beyond the count stand with the first.
     offsets: [[f32; BATCH]; 2],
     frustum: Frustum,
-    /// The least and the most that a camera's place moves a point towards the inner side of each plane.
+    /// How far each camera's place moves a point towards the inner side of each plane.
+    shifts: [[f32; BATCH]; Frustum::PLANES],
+    /// The least and the most of these.
     reaches: [[f32; 2]; Frustum::PLANES],
 }
 
@@ -31,36 +33,32 @@ impl Cameras {
         for (index, [right, forward]) in offsets_m.enumerate().take(BATCH) {
             (offsets[0][index], offsets[1][index]) = (right, forward);
         }
-        let mut cameras = Self { offsets, frustum, reaches: [[0.0; 2]; Frustum::PLANES] };
-        cameras.reaches = [
-            cameras.reach::<0>(),
-            cameras.reach::<1>(),
-            cameras.reach::<2>(),
-            cameras.reach::<3>(),
-            cameras.reach::<4>(),
-        ];
+        let mut cameras =
+            Self { offsets, frustum, shifts: [[0.0; BATCH]; Frustum::PLANES], reaches: [[0.0; 2]; Frustum::PLANES] };
+        cameras.shift::<0>();
+        cameras.shift::<1>();
+        cameras.shift::<2>();
+        cameras.shift::<3>();
+        cameras.shift::<4>();
         cameras
     }
 
-    fn reach<const PLANE: usize>(&self) -> [f32; 2] {
-        let [right, forward] = &self.offsets;
+    fn shift<const PLANE: usize>(&mut self) {
         let still = self.frustum.inside::<PLANE>([0.0; 3]);
-        let moved = |index: usize| self.frustum.inside::<PLANE>([-right[index], 0.0, -forward[index]]) - still;
-        let reach = |[least, most]: [f32; 2], index| [math::min(least, moved(index)), math::max(most, moved(index))];
-        (0..BATCH).fold([f32::INFINITY, f32::NEG_INFINITY], reach)
+        let [right, forward] = &self.offsets;
+        let [mut least, mut most] = [f32::INFINITY, f32::NEG_INFINITY];
+        for (index, shift) in self.shifts[PLANE].iter_mut().enumerate() {
+            *shift = self.frustum.inside::<PLANE>([-right[index], 0.0, -forward[index]]) - still;
+            (least, most) = (math::min(least, *shift), math::max(most, *shift));
+        }
+        self.reaches[PLANE] = [least, most];
     }
 
     /// To the right and forward, of `N` cameras from the `first` on \[m\].
     #[inline(always)]
     pub(super) fn offsets<const N: usize>(&self, first: usize) -> [Lane<f32, N>; 2] {
-        let first = first.min(BATCH - N);
-        let lanes = |all: &[f32; BATCH]| {
-            let mut lanes = [0.0; N];
-            lanes.copy_from_slice(&all[first..first + N]);
-            lanes
-        };
         let [right, forward] = &self.offsets;
-        [lanes(right), lanes(forward)]
+        [lanes(right, first), lanes(forward, first)]
     }
 
     /// At which planes a segment is to be cut; `None` if no camera sees any of it.
@@ -83,20 +81,20 @@ impl Cameras {
         (!is_outside).then_some(u8::from(!is_inside) << PLANE)
     }
 
-    /// Which part of a segment the cameras at `offsets` see.
+    /// Which part of a segment `N` cameras from the `first` on see.
     #[inline(always)]
     pub(super) fn seen_part<const N: usize>(
         &self,
         (start, end): ([f32; 3], [f32; 3]),
-        offsets: &[Lane<f32, N>; 2],
+        first: usize,
         planes: CutPlanes,
     ) -> SeenPart<N> {
         let mut part = SeenPart { enter: [0.0; N], leave: [1.0; N] };
-        self.cut::<0, N>((start, end), offsets, planes, &mut part);
-        self.cut::<1, N>((start, end), offsets, planes, &mut part);
-        self.cut::<2, N>((start, end), offsets, planes, &mut part);
-        self.cut::<3, N>((start, end), offsets, planes, &mut part);
-        self.cut::<4, N>((start, end), offsets, planes, &mut part);
+        self.cut::<0, N>((start, end), first, planes, &mut part);
+        self.cut::<1, N>((start, end), first, planes, &mut part);
+        self.cut::<2, N>((start, end), first, planes, &mut part);
+        self.cut::<3, N>((start, end), first, planes, &mut part);
+        self.cut::<4, N>((start, end), first, planes, &mut part);
         part
     }
 
@@ -104,16 +102,21 @@ impl Cameras {
     fn cut<const PLANE: usize, const N: usize>(
         &self,
         (start, end): ([f32; 3], [f32; 3]),
-        [right, forward]: &[Lane<f32, N>; 2],
+        first: usize,
         CutPlanes(planes): CutPlanes,
         part: &mut SeenPart<N>,
     ) {
         if planes & (1 << PLANE) == 0 {
             return;
         }
-        for lane in 0..N {
-            let inside = |[x, y, z]: [f32; 3]| self.frustum.inside::<PLANE>([x - right[lane], y, z - forward[lane]]);
-            let (from, to) = (inside(start), inside(end));
+        let (start, end) = (self.frustum.inside::<PLANE>(start), self.frustum.inside::<PLANE>(end));
+        let shifts = lanes::<N>(&self.shifts[PLANE], first);
+        for (lane, shift) in shifts.into_iter().enumerate() {
+            let (from, to) = (start + shift, end + shift);
+            // One lane is spared what changes nothing; several go together.
+            if N == 1 && from >= 0.0 && to >= 0.0 {
+                continue;
+            }
             let at = from / (from - to);
             let (enter, leave) = (part.enter[lane], part.leave[lane]);
             let later = if (from < 0.0) & (at > enter) { at } else { enter };
@@ -121,6 +124,15 @@ impl Cameras {
             part.leave[lane] = if (to < 0.0) & (at < leave) { at } else { leave };
         }
     }
+}
+
+/// `N` of all, from the `first` on, or the last.
+#[inline(always)]
+fn lanes<const N: usize>(all: &[f32; BATCH], first: usize) -> Lane<f32, N> {
+    let first = first.min(BATCH - N);
+    let mut lanes = [0.0; N];
+    lanes.copy_from_slice(&all[first..first + N]);
+    lanes
 }
 
 /// Which part of a segment is seen, in shares of the way from its start to its end; none, where `enter` is not below

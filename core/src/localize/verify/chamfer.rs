@@ -5,9 +5,10 @@
 
 use super::channel::CHANNELS;
 use super::distance_planes::{COLUMNS, Pixel, UNITS_PER_PIXEL};
+use crate::matching::{Quad, lesser, saturating_sum};
 
-const STEP: u8 = UNITS_PER_PIXEL as u8;
-const DIAGONAL: u8 = 7;
+const STEP: Quad = [UNITS_PER_PIXEL as u8; 4];
+const DIAGONAL: Quad = [7; 4];
 const FAR: Pixel = [u8::MAX; CHANNELS];
 
 /// Lowers the distance of each pixel in each channel to that of the nearest drawn one, on top of what is drawn there.
@@ -29,20 +30,27 @@ pub(super) fn spread(pixels: &mut [Pixel]) {
 
 /// Steps from the row before, straight and slanted.
 fn step_across(row: &mut [Pixel], before: &[Pixel; COLUMNS + 2]) {
-    let [slant, straight, other_slant] = [0, 1, 2].map(|from: usize| before[from..][..COLUMNS].as_flattened());
-    for (index, distance) in row.as_flattened_mut().iter_mut().enumerate().take(COLUMNS * CHANNELS) {
-        let slanted = slant[index].min(other_slant[index]).saturating_add(DIAGONAL);
-        *distance = (*distance).min(slanted).min(straight[index].saturating_add(STEP));
+    let from = |column: usize| quads(&before[column..][..COLUMNS]);
+    let sources = from(0).iter().zip(from(1)).zip(from(2));
+    let (distances, _) = row.as_flattened_mut().as_chunks_mut();
+    for (distance, ((slant, straight), other_slant)) in distances.iter_mut().zip(sources) {
+        let slanted = saturating_sum(lesser(*slant, *other_slant), DIAGONAL);
+        *distance = lesser(lesser(*distance, slanted), saturating_sum(*straight, STEP));
     }
 }
 
 /// Steps from each pixel of a row to the next.
 fn step_along<'p>(row: impl Iterator<Item = &'p mut Pixel>) {
-    let mut beside = FAR;
+    let mut beside = [[u8::MAX; 4]; CHANNELS / 4];
     for pixel in row {
-        for channel in 0..CHANNELS {
-            beside[channel] = beside[channel].saturating_add(STEP).min(pixel[channel]);
+        let (distances, _) = pixel.as_chunks_mut();
+        for (beside, distance) in beside.iter_mut().zip(distances) {
+            *beside = lesser(*distance, saturating_sum(*beside, STEP));
+            *distance = *beside;
         }
-        *pixel = beside;
     }
+}
+
+fn quads(pixels: &[Pixel]) -> &[Quad] {
+    pixels.as_flattened().as_chunks().0
 }

@@ -191,12 +191,11 @@ impl<'m> Checker<'m> {
             let Some(planes) = cameras.planes_across(segment.start, segment.end) else { continue };
             let count = Self::point_count(segment, per_px);
             for first in (0..found.len()).step_by(N) {
-                let offsets = cameras.offsets::<N>(first);
-                let part = cameras.seen_part((segment.start, segment.end), &offsets, planes);
+                let part = cameras.seen_part((segment.start, segment.end), first, planes);
                 if !any(&part.is_any()) {
                     continue;
                 }
-                let image = self.project_in_lanes(segment, &offsets, &part);
+                let image = self.project_in_lanes(segment, &cameras.offsets::<N>(first), &part);
                 let is_seen = image.is_seen(&self.filter);
                 if any(&is_seen) {
                     let [more_explained, more] = self.evidence_of_segment(&image, &is_seen, &tolerance, count);

@@ -205,7 +205,7 @@ impl<'m> Search<'m> {
         let half = side / 2;
         let headings = self.headings;
         let closeness =
-            Closeness { position_m: 0.4 * self.cell_m, heading_rad: 0.67 * headings.left_rad, spacing_px: 14.0 };
+            Closeness { position_m: 0.4 * self.cell_m, heading_rad: 0.67 * headings.left_rad, spacing_px: 40.0 };
         let closeness = closeness.loosely_at(&pose);
         let per_heading = self.config.cells_per_node();
         let cell_m = self.cell_m;

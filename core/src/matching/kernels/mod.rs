@@ -9,10 +9,13 @@ mod cortex_m;
 mod neon;
 #[cfg(any(test, edgeloc_body = "portable"))]
 mod portable;
+mod quads;
 #[cfg(edgeloc_body = "simd128")]
 mod simd128;
 #[cfg(edgeloc_body = "x86_64")]
 mod x86_64;
+
+pub(crate) use quads::{Quad, lesser, saturating_sum};
 
 use super::{BinPair, PanelRow};
 
