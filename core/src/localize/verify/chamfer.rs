@@ -5,10 +5,10 @@
 
 use super::channel::CHANNELS;
 use super::distance_planes::{COLUMNS, Pixel, UNITS_PER_PIXEL};
-use crate::matching::{Quad, lesser, saturating_sum};
+use crate::matching::lower_by_step;
 
-const STEP: Quad = [UNITS_PER_PIXEL as u8; 4];
-const DIAGONAL: Quad = [7; 4];
+const STEP: u8 = UNITS_PER_PIXEL as u8;
+const DIAGONAL: u8 = 7;
 const FAR: Pixel = [u8::MAX; CHANNELS];
 
 /// Lowers the distance of each pixel in each channel to that of the nearest drawn one, on top of what is drawn there.
@@ -30,27 +30,16 @@ pub(super) fn spread(pixels: &mut [Pixel]) {
 
 /// Steps from the row before, straight and slanted.
 fn step_across(row: &mut [Pixel], before: &[Pixel; COLUMNS + 2]) {
-    let from = |column: usize| quads(&before[column..][..COLUMNS]);
-    let sources = from(0).iter().zip(from(1)).zip(from(2));
-    let (distances, _) = row.as_flattened_mut().as_chunks_mut();
-    for (distance, ((slant, straight), other_slant)) in distances.iter_mut().zip(sources) {
-        let slanted = saturating_sum(lesser(*slant, *other_slant), DIAGONAL);
-        *distance = lesser(lesser(*distance, slanted), saturating_sum(*straight, STEP));
+    for (column, step) in [(0, DIAGONAL), (1, STEP), (2, DIAGONAL)] {
+        lower_by_step(row.as_flattened_mut(), before[column..][..COLUMNS].as_flattened(), step);
     }
 }
 
 /// Steps from each pixel of a row to the next.
 fn step_along<'p>(row: impl Iterator<Item = &'p mut Pixel>) {
-    let mut beside = [[u8::MAX; 4]; CHANNELS / 4];
+    let mut beside = FAR;
     for pixel in row {
-        let (distances, _) = pixel.as_chunks_mut();
-        for (beside, distance) in beside.iter_mut().zip(distances) {
-            *beside = lesser(*distance, saturating_sum(*beside, STEP));
-            *distance = *beside;
-        }
+        lower_by_step(pixel, &beside, STEP);
+        beside = *pixel;
     }
-}
-
-fn quads(pixels: &[Pixel]) -> &[Quad] {
-    pixels.as_flattened().as_chunks().0
 }

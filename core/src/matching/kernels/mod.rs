@@ -5,17 +5,17 @@
 
 #[cfg(edgeloc_body = "smlad")]
 mod cortex_m;
+mod distance_steps;
 #[cfg(edgeloc_body = "neon")]
 mod neon;
 #[cfg(any(test, edgeloc_body = "portable"))]
 mod portable;
-mod quads;
 #[cfg(edgeloc_body = "simd128")]
 mod simd128;
 #[cfg(edgeloc_body = "x86_64")]
 mod x86_64;
 
-pub(crate) use quads::{Quad, lesser, saturating_sum};
+pub(crate) use distance_steps::lower_by_step;
 
 use super::{BinPair, PanelRow};
 
