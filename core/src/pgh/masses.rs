@@ -172,11 +172,10 @@ impl<'m> Masses<'m> {
     fn gather_pairs(&mut self, pairs: Range<usize>) -> usize {
         let mut count = 0;
         let (bins, _) = self.bins.as_chunks_mut::<2>();
-        for first in pairs.clone().step_by(64) {
-            let mut filled = 0_u64;
-            for (bit, pair) in bins[first..pairs.end].iter().take(64).enumerate() {
-                let both: u64 = zerocopy::transmute!(*pair);
-                filled |= u64::from(both != 0) << bit;
+        for first in pairs.clone().step_by(32) {
+            let mut filled = 0_u32;
+            for (bit, [even, odd]) in bins[first..pairs.end].iter().take(32).enumerate() {
+                filled |= u32::from(even | odd != 0) << bit;
             }
             while filled != 0 {
                 let index = first + filled.trailing_zeros() as usize;
