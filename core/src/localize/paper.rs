@@ -10,7 +10,7 @@ use super::{
 };
 use crate::database::{NodeId, TopologicalDatabase};
 use crate::geometry::{Heading, Segment2};
-use crate::matching::{Panel, PanelRow, RootRows, ViewScore, score_view};
+use crate::matching::{Panel, PanelRow, RootRows, SKIPS_EMPTY_BINS, ViewScore, score_view};
 use crate::pgh::{HistogramBuilder, Line, LineBlock, LongestLines};
 
 /// Scores nodes by pairwise geometric histograms, look by look.
@@ -156,6 +156,9 @@ impl SceneMatcher<'_> {
         let Some((node, mut builder)) = database.node(id).zip(builder) else { return ViewScore::default() };
         let prediction = predict_view(&node, database.rig(), heading);
         let view_lines = keep_longest(prediction, filter, config, self.view_lines);
+        if SKIPS_EMPTY_BINS {
+            view_lines.sort_unstable_by_key(Line::kin);
+        }
         let mut panel = Panel::new(self.panel_rows);
         let scene_lines = &self.lines[..self.line_count];
         let score = score_view(scene_lines, &self.rows, view_lines, &mut builder, &mut panel, self.best_coefficients);
@@ -179,7 +182,7 @@ fn keep_longest<'s>(
     filter: &SegmentFilter,
     config: &LocalizerConfig,
     storage: &'s mut [Line],
-) -> &'s [Line] {
+) -> &'s mut [Line] {
     let mut longest = LongestLines::new(storage);
     for (order, segment) in segments.enumerate().filter(|(_, segment)| filter.keeps(segment)) {
         longest.offer(Line::new(&segment, order as u32, &config.shape));

@@ -218,7 +218,7 @@ pub(super) fn raise_best(body: impl Body, rows: &RootRows<'_>, panels: &[Panel<'
     loop {
         rest = match rest {
             [] => return,
-            [a] => meet(body, rows, [a], &[], best),
+            [a] => return body.raise_best(rows.rows(), a.rows, best),
             [a, b] => meet(body, rows, [a, b], &[], best),
             [a, b, _, _] => meet(body, rows, [a, b], &rest[2..], best),
             [a, b, c, later @ ..] => meet(body, rows, [a, b, c], later, best),

@@ -1,81 +1,38 @@
 //! Construction of root histograms.
 //!
-//! What does not branch is written over blocks of lines, so that it becomes vectors where there are any: a line's span
-//! of perpendicular distances, its mass per bin (one division) and the two angle bins that share it. What depends on the
-//! place is then two additions of a pair of bins, for the first and the last distance bin of the span; the bins between
-//! come from differences that are summed once a histogram. Normalisation and square roots follow, for pairs of bins that
-//! are not empty.
+//! Where there are vectors, what does not branch is written over blocks of lines: a line's span of perpendicular distances,
+//! its mass per bin (one division) and the two angle bins that share it. What depends on the place is then two additions
+//! of a pair of bins, for the first and the last distance bin of the span; the bins between come from differences that are
+//! summed once a histogram. Elsewhere lines are added one by one, straight to the bins. Normalisation and square roots
+//! follow, for pairs of bins that are not empty.
 //!
 //! Departures from the plain formula: coordinates are rounded to 1/16 px, distances to 1/4096 bin, masses to 1/256 px.
 //! Coefficients within a scene of ten lines or more differ from exact arithmetic by less than 2e-4 in the mean and 7e-3 at
 //! worst (a sliver of mass over a bin border, magnified by the root), view scores of twenty or more by less than 3e-4:
 //! measured against the naive `f64` twin.
 
-use super::block::{BLOCK, WIDEST};
-use super::root::{nearest, root_q15};
-use super::{DistanceKind, Line, LineBlock, PghShape, ShapeError};
-use crate::geometry::{CapacityError, Segment2};
+use super::block::BLOCK;
+use super::frame::{Axes, Frame};
+use super::masses::{Filled, Masses};
+use super::{Line, LineBlock, PghShape, ShapeError};
+use crate::geometry::CapacityError;
 use core::fmt;
-use core::ops::Range;
-
-/// Positions along the distance axis have this many fractional bits of a bin.
-const POSITION_BITS: u32 = 12;
-const BIN: i32 = 1 << POSITION_BITS;
-
-/// Columns behind the last angle bin, for what belongs to the first ones after the wrap.
-const WRAPPED: usize = 2;
 
 /// Builds the root histogram of one line of a scene after another.
 #[derive(Debug)]
 pub struct HistogramBuilder<'m> {
-    distance_bins: usize,
-    angle_bins: usize,
-    distance: DistanceKind,
-    interpolates_angle: bool,
-    /// Bins per px of distance.
-    bins_per_px: f32,
-    /// Fractional bits of a position before it is cut to [`POSITION_BITS`]: as many as fit.
-    wide_bits: u32,
+    axes: Axes,
     /// The lines of the scene.
     blocks: &'m mut [LineBlock],
     line_count: usize,
-    scratch: Scratch<'m>,
-}
-
-/// Masses on their way to a histogram, in units of 1/256 px of length. Both grids are empty between histograms.
-#[derive(Debug)]
-struct Scratch<'m> {
-    /// `[distance + 1][stride]`: masses in the first and the last distance bin of each line.
-    ends: &'m mut [i32],
-    /// The same of mass differences along the distance axis, for the bins between.
-    steps: &'m mut [i32],
-    /// `[distance][angle]`: the histogram, and a bin more for an odd number of them.
-    masses: &'m mut [i32],
-    /// Indices of the pairs of bins that aren't empty; or the roots of pairs.
-    indices: &'m mut [i32],
-}
-
-/// Columns of the grids: whole vectors where there are any.
-const fn stride_of(angle_bins: usize, block: usize) -> usize {
-    (angle_bins + WRAPPED).next_multiple_of(block)
-}
-
-impl Scratch<'_> {
-    /// The same on every machine, whatever its stride.
-    const fn grid_len(shape: &PghShape) -> usize {
-        (shape.distance_bins as usize + 1).saturating_mul(stride_of(shape.angle_bins as usize, WIDEST))
-    }
-
-    const fn masses_len(shape: &PghShape) -> usize {
-        2 * shape.bin_count().div_ceil(2)
-    }
+    masses: Masses<'m>,
 }
 
 impl<'m> HistogramBuilder<'m> {
     /// Number of `i32` a builder for `shape` works on.
     #[must_use]
     pub const fn memory_len(shape: &PghShape) -> usize {
-        2 * Scratch::grid_len(shape) + Scratch::masses_len(shape) + shape.bin_count().div_ceil(2) + WIDEST - 1
+        Masses::memory_len(shape)
     }
 
     /// A builder for histograms of `shape`, working in `memory`, for scenes of as many lines as `blocks` hold.
@@ -87,27 +44,7 @@ impl<'m> HistogramBuilder<'m> {
         let (capacity, needed) = (memory.len(), Self::memory_len(&shape));
         let too_small = CapacityError { what: "histogram masses", capacity, needed };
         let memory = memory.get_mut(..needed).ok_or(BuilderError::Memory(too_small))?;
-        // The grids begin with a cache line; where that can't be told they may lie anywhere.
-        let unaligned = memory.as_ptr().align_offset(size_of::<[i32; WIDEST]>()).min(WIDEST - 1);
-        let (ends, memory) = memory[unaligned..].split_at_mut(Scratch::grid_len(&shape));
-        let (steps, memory) = memory.split_at_mut(Scratch::grid_len(&shape));
-        let (masses, indices) = memory.split_at_mut(Scratch::masses_len(&shape));
-        ends.fill(0);
-        steps.fill(0);
-        let bins_per_px = 1.0 / shape.distance_bin_width_px();
-        // The farthest two points can be apart, and the offset of a signed axis.
-        let reach = 3.0 * Segment2::MAX_COORDINATE_PX * bins_per_px + f32::from(shape.distance_bins / 2 + 2);
-        Ok(Self {
-            distance_bins: usize::from(shape.distance_bins),
-            angle_bins: usize::from(shape.angle_bins),
-            distance: shape.distance,
-            interpolates_angle: shape.interpolates_angle,
-            bins_per_px,
-            wide_bits: (reach as u32).leading_zeros() - 1,
-            blocks,
-            line_count: 0,
-            scratch: Scratch { ends, steps, masses, indices },
-        })
+        Ok(Self { axes: Axes::of(&shape), blocks, line_count: 0, masses: Masses::new(&shape, memory) })
     }
 
     /// Takes the lines that histograms are to be built of.
@@ -133,302 +70,34 @@ impl<'m> HistogramBuilder<'m> {
     /// Calls `put(index, roots)` for each pair of bins `2 index` and `2 index + 1` that aren't both empty, in ascending
     /// order; a bin is `distance bin x angle bins + angle bin`, a root the square root of its share of the mass in Q15.
     #[inline(always)]
-    pub fn build(&mut self, reference: &Line, index: usize, mut put: impl FnMut(u16, [i16; 2])) {
-        let Some(masses) = self.gather_masses(reference, index) else { return };
-        let count = self.scratch.gather_pairs(masses.pairs);
-        let (indices, roots) = (&self.scratch.indices[..count], &mut self.scratch.masses[..2 * count]);
-        for root in &mut *roots {
-            *root = root_q15(*root, masses.per_mass);
-        }
-        for (index, [even, odd]) in indices.iter().zip(roots.as_chunks().0) {
-            put(*index as u16, [*even as i16, *odd as i16]);
+    pub fn build(&mut self, reference: &Line, index: usize, put: impl FnMut(u16, [i16; 2])) {
+        if let Some(filled) = self.gather(reference, index) {
+            self.masses.take(filled, put);
         }
     }
 
-    /// The same for a receiver that takes empty pairs too, as long as all others are among them: where there are vectors,
-    /// telling them apart takes longer than their roots.
+    /// The same for a receiver that takes empty pairs too, as long as all others are among them.
     #[inline(always)]
-    pub(crate) fn build_dense(&mut self, reference: &Line, index: usize, mut put: impl FnMut(u16, [i16; 2])) {
-        if BLOCK == 1 {
-            return self.build(reference, index, put);
-        }
-        let Some(masses) = self.gather_masses(reference, index) else { return };
-        let bins = &self.scratch.masses[2 * masses.pairs.start..2 * masses.pairs.end];
-        let packed = &mut self.scratch.indices[..masses.pairs.len()];
-        let root = |mass| root_q15(mass, masses.per_mass);
-        let pack = |even: i32, odd: i32| even & 0xffff | odd << 16;
-        for (packed, [even, odd]) in packed.iter_mut().zip(bins.as_chunks().0) {
-            *packed = pack(root(*even), root(*odd));
-        }
-        for (index, packed) in masses.pairs.zip(packed) {
-            put(index as u16, [*packed as i16, (*packed >> 16) as i16]);
+    pub(crate) fn build_dense(&mut self, reference: &Line, index: usize, put: impl FnMut(u16, [i16; 2])) {
+        if let Some(filled) = self.gather(reference, index) {
+            self.masses.take_dense(filled, put);
         }
     }
 
-    /// Brings the masses of a histogram together; `None` if it has none.
     #[inline(always)]
-    fn gather_masses(&mut self, reference: &Line, index: usize) -> Option<Masses> {
-        let own_length = self.swap_length(index, 0)?;
-        let frame = Frame::about(reference, self);
-        let mut reach = Reach::NONE;
-        let blocks = self.line_count.div_ceil(BLOCK);
-        for block in &self.blocks[..blocks] {
-            self.scratch.add(&frame, block, &mut reach);
-            if self.distance == DistanceKind::Unsigned {
-                self.scratch.add(&frame.mirrored(), block, &mut reach);
-            }
-        }
-        self.swap_length(index, own_length);
-        let rows = reach.rows();
-        let total = self.scratch.sum(&rows, self.distance_bins, self.angle_bins, frame.stride as usize);
-        let bins = rows.start * self.angle_bins..rows.end.min(self.distance_bins) * self.angle_bins;
-        // A pair of bins may reach into the row before or behind.
-        if let Some(before) = bins.start.checked_sub(1) {
-            self.scratch.masses[before] = 0;
-        }
-        if let Some(behind) = self.scratch.masses.get_mut(bins.end) {
-            *behind = 0;
-        }
-        let pairs = bins.start / 2..bins.end.div_ceil(2);
-        (total > 0).then(|| Masses { per_mass: 1.0 / total as f32, pairs })
+    fn gather(&mut self, reference: &Line, index: usize) -> Option<Filled> {
+        let own_mass = self.swap_mass(index, 0.0)?;
+        let blocks = &self.blocks[..self.line_count.div_ceil(BLOCK)];
+        let filled = self.masses.gather(&Frame::about(reference, &self.axes), blocks);
+        self.swap_mass(index, own_mass);
+        filled
     }
 
-    /// Replaces the length of a line and returns what it was; `None` where there is no line.
-    fn swap_length(&mut self, index: usize, length_q4: i32) -> Option<i32> {
+    /// Replaces the mass of a line and returns what it was; `None` where there is no line.
+    #[inline(always)]
+    fn swap_mass(&mut self, index: usize, mass: f32) -> Option<f32> {
         let block = self.blocks[..self.line_count.div_ceil(BLOCK)].get_mut(index / BLOCK)?;
-        Some(core::mem::replace(&mut block.length_q4[index % BLOCK], length_q4))
-    }
-}
-
-/// What is known of the masses of a histogram.
-#[derive(Debug)]
-struct Masses {
-    /// One by their total.
-    per_mass: f32,
-    /// The pairs of bins that may hold any.
-    pairs: Range<usize>,
-}
-
-/// A reference line with its histogram's axes.
-#[derive(Debug, Clone, Copy)]
-struct Frame {
-    /// Normal of the reference line, in bins per 1/16 px with [`HistogramBuilder::wide_bits`].
-    normal: [i32; 2],
-    /// Position of the image's origin, less the axis' least, in the same unit.
-    offset: i32,
-    /// From there to [`POSITION_BITS`].
-    shift: u32,
-    /// Greatest position, in Q12 bins.
-    end: i32,
-    /// Least width of a span, 1 px, in Q12 bins.
-    least_span: i32,
-    direction: i32,
-    angle_bins: i32,
-    /// Half an angle bin in Q16 where the nearest bin takes all, none where two share.
-    angle_offset: i32,
-    /// Which bits of an angle's position between two bins count.
-    angle_mask: i32,
-    stride: i32,
-}
-
-impl Frame {
-    fn about(reference: &Line, builder: &HistogramBuilder<'_>) -> Self {
-        let scale = i64::from((builder.bins_per_px * (1_u64 << builder.wide_bits) as f32) as i32);
-        // From Q30 normals to positions of coordinates in Q4 px.
-        let normal = reference.normal_q30.map(|part| ((i64::from(part) * scale) >> (30 + 4)) as i32);
-        let [x, y] = reference.midpoint_q4;
-        let middle = match builder.distance {
-            DistanceKind::Signed => (builder.distance_bins as i32) << (builder.wide_bits - 1),
-            DistanceKind::Unsigned => 0,
-        };
-        let offset = middle.wrapping_sub(normal[0].wrapping_mul(x).wrapping_add(normal[1].wrapping_mul(y)));
-        Self {
-            normal,
-            offset,
-            shift: builder.wide_bits - POSITION_BITS,
-            end: builder.distance_bins as i32 * BIN,
-            least_span: ((builder.bins_per_px * BIN as f32) as i32).max(1),
-            direction: reference.direction as i32,
-            angle_bins: builder.angle_bins as i32,
-            angle_offset: if builder.interpolates_angle { 0 } else { 0x8000 },
-            angle_mask: if builder.interpolates_angle { 0xffff } else { 0 },
-            stride: stride_of(builder.angle_bins, BLOCK) as i32,
-        }
-    }
-
-    /// The same with the normal to the other side.
-    fn mirrored(&self) -> Self {
-        let normal = self.normal.map(|part| -part);
-        Self { normal, offset: self.offset.wrapping_neg(), ..*self }
-    }
-
-    /// Position of a point along the distance axis, in Q12 bins.
-    #[inline(always)]
-    fn position(&self, x_q4: i32, y_q4: i32) -> i32 {
-        // Each product may pass the border of i32; the sum is within reach.
-        let wide = self.normal[0].wrapping_mul(x_q4).wrapping_add(self.normal[1].wrapping_mul(y_q4));
-        wide.wrapping_add(self.offset) >> self.shift
-    }
-
-    /// What each line of a block adds to the grid.
-    #[inline(always)]
-    fn shares(&self, block: &LineBlock, reach: &mut Reach) -> Shares {
-        let mut shares = Shares::NONE;
-        for i in 0..BLOCK {
-            let a = self.position(block.start_x_q4[i], block.start_y_q4[i]);
-            let b = self.position(block.end_x_q4[i], block.end_y_q4[i]);
-            let (low, high) = (a.min(b), a.max(b));
-            let span = (high - low).max(self.least_span);
-            let low = if high - low < self.least_span { ((low + high) >> 1) - (self.least_span >> 1) } else { low };
-            // A mass is 16 times a length in Q4 px.
-            let density = (block.length_q4[i] << 4) as f32 / span as f32;
-            let (low, high) = (low.max(0).min(self.end), (low + span).max(0).min(self.end));
-            reach.least[i] = reach.least[i].min(low);
-            reach.greatest[i] = reach.greatest[i].max(high);
-
-            let (first, last) = (low >> POSITION_BITS, high >> POSITION_BITS);
-            let border = (first + 1) << POSITION_BITS;
-            let in_first = (high.min(border) - low) as f32;
-            let in_last = (high - border.max(last << POSITION_BITS)).max(0) as f32;
-
-            let relative = (block.direction[i] - self.direction) & 0xffff;
-            let angle = relative * self.angle_bins + self.angle_offset;
-            let column = angle >> 16;
-            shares.first[i] = first * self.stride + column;
-            shares.last[i] = last * self.stride + column;
-
-            let above = (angle & self.angle_mask) as f32 * (1.0 / 65_536.0);
-            let split = |mass: f32| {
-                let (whole, above) = (nearest(mass), nearest(mass * above));
-                [whole - above, above]
-            };
-            shares.in_first[i] = split(density * in_first);
-            shares.in_last[i] = split(density * in_last);
-            shares.in_between[i] = split(density * BIN as f32);
-        }
-        shares
-    }
-}
-
-/// What the lines of a block add to the grid: masses for two neighbouring angle bins each.
-#[derive(Debug)]
-struct Shares {
-    /// Places of the first distance bins, and of the last, which may be the same.
-    first: [i32; BLOCK],
-    last: [i32; BLOCK],
-    in_first: [[i32; 2]; BLOCK],
-    in_last: [[i32; 2]; BLOCK],
-    /// In each bin between the two; means nothing if there is none.
-    in_between: [[i32; 2]; BLOCK],
-}
-
-impl Shares {
-    const NONE: Self = Self {
-        first: [0; BLOCK],
-        last: [0; BLOCK],
-        in_first: [[0; 2]; BLOCK],
-        in_last: [[0; 2]; BLOCK],
-        in_between: [[0; 2]; BLOCK],
-    };
-}
-
-/// The least and the greatest position of the lines of a scene along the distance axis, by place in their block.
-#[derive(Debug)]
-struct Reach {
-    least: [i32; BLOCK],
-    greatest: [i32; BLOCK],
-}
-
-impl Reach {
-    const NONE: Self = Self { least: [i32::MAX; BLOCK], greatest: [0; BLOCK] };
-
-    /// The rows of the grids that are not empty are among these; the last may be the one behind the last distance bin.
-    #[inline(always)]
-    fn rows(&self) -> Range<usize> {
-        let least = self.least.into_iter().fold(i32::MAX, i32::min) >> POSITION_BITS;
-        let greatest = self.greatest.into_iter().fold(0, i32::max) >> POSITION_BITS;
-        least.min(greatest) as usize..greatest as usize + 1
-    }
-}
-
-impl Scratch<'_> {
-    #[inline(always)]
-    fn add(&mut self, frame: &Frame, block: &LineBlock, reach: &mut Reach) {
-        let shares = frame.shares(block, reach);
-        for i in 0..BLOCK {
-            let (first, last) = (shares.first[i], shares.last[i]);
-            add_pair(self.ends, first, &shares.in_first[i]);
-            add_pair(self.ends, last, &shares.in_last[i]);
-            if last - first > frame.stride {
-                add_pair(self.steps, first + frame.stride, &shares.in_between[i]);
-                add_pair(self.steps, last, &shares.in_between[i].map(i32::wrapping_neg));
-            }
-        }
-    }
-
-    /// Brings the `rows` of the grids together in `masses`, leaves them empty and returns the total.
-    #[inline(always)]
-    fn sum(&mut self, rows: &Range<usize>, distance_bins: usize, angle_bins: usize, stride: usize) -> u32 {
-        let mut totals = [0_i32; BLOCK];
-        for column in (0..stride).step_by(BLOCK) {
-            let mut running = [0_i32; BLOCK];
-            for row in rows.clone() {
-                let place = row * stride + column;
-                let step = self.steps[place..].first_chunk_mut();
-                let end = self.ends[place..].first_chunk_mut();
-                let (Some(step), Some(end)) = (step, end) else { break };
-                running = sum_of(&running, step);
-                let masses = sum_of(&running, end);
-                (*step, *end) = ([0; BLOCK], [0; BLOCK]);
-                if row == distance_bins {
-                    break;
-                }
-                totals = sum_of(&totals, &masses);
-                let bins = &mut self.masses[row * angle_bins..][..angle_bins];
-                if let Some(bins) = bins.get_mut(column..).and_then(<[i32]>::first_chunk_mut) {
-                    *bins = masses;
-                    continue;
-                }
-                for (column, mass) in (column..angle_bins + WRAPPED).zip(masses) {
-                    match column.checked_sub(angle_bins) {
-                        None => bins[column] = mass,
-                        Some(wrapped) => bins[wrapped.min(angle_bins - 1)] += mass,
-                    }
-                }
-            }
-        }
-        totals.into_iter().sum::<i32>() as u32
-    }
-
-    /// Moves the pairs of bins that aren't empty, among those in `pairs`, to the front of `masses`, their indices to that of
-    /// `indices`; returns how many.
-    #[inline(always)]
-    fn gather_pairs(&mut self, pairs: Range<usize>) -> usize {
-        let mut count = 0;
-        let (masses, _) = self.masses.as_chunks_mut::<2>();
-        for index in pairs {
-            let pair = masses[index];
-            let (Some(place), Some(mass)) = (self.indices.get_mut(count), masses.get_mut(count)) else { break };
-            (*place, *mass) = (index as i32, pair);
-            let both: u64 = zerocopy::transmute!(pair);
-            count += usize::from(both != 0);
-        }
-        count
-    }
-}
-
-#[inline(always)]
-fn sum_of(a: &[i32; BLOCK], b: &[i32; BLOCK]) -> [i32; BLOCK] {
-    core::array::from_fn(|i| a[i] + b[i])
-}
-
-#[inline(always)]
-fn add_pair(grid: &mut [i32], place: i32, pair: &[i32; 2]) {
-    // No place is negative: one comparison is enough.
-    let place = place as u32 as usize;
-    if let Some([a, b]) = grid.get_mut(place..place + 2) {
-        *a += pair[0];
-        *b += pair[1];
+        Some(core::mem::replace(&mut block.mass[index % BLOCK], mass))
     }
 }
 

@@ -67,6 +67,14 @@ impl Line {
         self.order
     }
 
+    /// Puts lines that see the others alike near each other: by direction in sixteenths of a period, then by how far they are
+    /// from the image's origin. Their histograms fill the same bins.
+    pub(crate) fn kin(&self) -> (u32, i32) {
+        const SECTOR: u32 = 0x1000;
+        let parts = [0, 1].map(|axis| i64::from(self.normal_q30[axis]) * i64::from(self.midpoint_q4[axis]));
+        (((self.direction + SECTOR / 2) & 0xffff) / SECTOR, ((parts[0] + parts[1]) >> 30) as i32)
+    }
+
     /// Direction as a fraction of the shape's period.
     #[must_use]
     pub const fn direction(&self) -> BinaryAngle {

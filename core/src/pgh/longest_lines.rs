@@ -31,9 +31,9 @@ impl<'m> LongestLines<'m> {
 
     /// The lines kept, in no particular but a reproducible order.
     #[must_use]
-    pub fn into_lines(self) -> &'m [Line] {
+    pub fn into_lines(self) -> &'m mut [Line] {
         let Self { storage, count } = self;
-        &storage[..count]
+        &mut storage[..count]
     }
 
     fn sift_up(&mut self, mut child: usize) {

@@ -19,8 +19,11 @@
 
 mod block;
 mod builder;
+mod frame;
 mod line;
 mod longest_lines;
+mod masses;
+mod one_by_one;
 mod root;
 mod shape;
 

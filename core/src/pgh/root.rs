@@ -12,15 +12,30 @@ pub(super) fn root_q15(mass: i32, per_mass: f32) -> i32 {
     let mut inverse = f32::from_bits(0x5f37_5a86 - (share.to_bits() >> 1));
     inverse *= 1.5 - half * inverse * inverse;
     inverse *= 1.5 - half * inverse * inverse;
-    nearest(share * inverse * 32_768.0).min(i32::from(i16::MAX))
+    // The nearest integer to the root times 2^15, as below: the last bit of a sum with 384 is worth 2^-15.
+    const SHIFT: f32 = 384.0;
+    let root = (share * inverse + SHIFT).to_bits().wrapping_sub(SHIFT.to_bits()) as i32;
+    root.min(i32::from(i16::MAX))
+}
+
+const SHIFT: f32 = 12_582_912.0;
+
+#[inline(always)]
+fn nearest_bits(x: f32) -> u32 {
+    (x + SHIFT).to_bits()
 }
 
 /// The integer nearest to `x`, to the even one from halfway, within 2^22 on either side: the last bit of a sum with
 /// 3 x 2^22 is worth one.
 #[inline(always)]
 pub(super) fn nearest(x: f32) -> i32 {
-    const SHIFT: f32 = 12_582_912.0;
-    (x + SHIFT).to_bits().wrapping_sub(SHIFT.to_bits()) as i32
+    nearest_bits(x).wrapping_sub(SHIFT.to_bits()) as i32
+}
+
+/// The same for `x` that isn't negative, with one operation less where constants have to be fetched.
+#[inline(always)]
+pub(super) fn nearest_natural(x: f32) -> i32 {
+    (nearest_bits(x) & 0x3f_ffff) as i32
 }
 
 #[cfg(test)]
@@ -50,6 +65,7 @@ mod tests {
     fn the_nearest_integer_is_found() {
         for (x, expected) in [(0.0, 0), (0.49, 0), (0.51, 1), (-7.6, -8), (4_194_303.0, 4_194_303)] {
             assert_eq!(nearest(x), expected, "{x}");
+            assert!(x < 0.0 || nearest_natural(x) == expected, "{x}");
         }
     }
 }

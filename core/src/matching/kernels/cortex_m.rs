@@ -7,6 +7,10 @@ use super::{Body, LANES};
 use crate::matching::{BinPair, PanelRow};
 use core::arch::asm;
 
+/// Of a panel of up to so many pairs of bins those that no line fills are told beforehand and left out. Where lines that are
+/// alike lie in one panel that is half of all meetings.
+const TOLD: usize = 256;
+
 /// Lines whose sums stay in registers.
 const HALF: usize = LANES / 2;
 
@@ -20,6 +24,30 @@ impl Body for Smlad {
     #[inline(always)]
     fn best_coefficient(self, row: &[BinPair], panel: &[PanelRow]) -> i32 {
         if row.is_empty() { 0 } else { best_of_half::<0>(row, panel).max(best_of_half::<HALF>(row, panel)) }
+    }
+
+    fn raise_best<'a>(self, rows: impl Iterator<Item = &'a [BinPair]>, panel: &[PanelRow], best: &mut [i32]) {
+        let mut filled = [false; TOLD];
+        for (filled, row) in filled.iter_mut().zip(panel) {
+            let lanes: [u32; LANES] = zerocopy::transmute!(row.roots);
+            *filled = lanes.into_iter().fold(0, |any, lane| any | lane) != 0;
+        }
+        let mut meeting = [BinPair { index: 0, roots: [0; 2] }; TOLD];
+        for (row, best) in rows.zip(best) {
+            let mut meets = row;
+            if panel.len() <= TOLD && row.len() < TOLD {
+                let mut count = 0_usize;
+                for pair in row {
+                    // An index past the panel is looked up in place of another, and counts for nothing later.
+                    if filled[usize::from(pair.index) % TOLD] {
+                        meeting[count % TOLD] = *pair;
+                        count = count.wrapping_add(1);
+                    }
+                }
+                meets = &meeting[..count % TOLD];
+            }
+            *best = (*best).max(self.best_coefficient(meets, panel));
+        }
     }
 }
 

@@ -22,6 +22,10 @@ use super::{BinPair, PanelRow};
 /// View lines in a panel: one vector of coefficients.
 pub const LANES: usize = 16;
 
+/// Whether the work grows with the pairs of bins that any line of a panel fills, so that lines whose histograms are alike
+/// should lie in one.
+pub(crate) const SKIPS_EMPTY_BINS: bool = cfg!(edgeloc_body = "smlad");
+
 /// A way to compute coefficients.
 pub(crate) trait Body: Copy {
     /// What it is called.
@@ -34,6 +38,14 @@ pub(crate) trait Body: Copy {
     #[inline(always)]
     fn best_of_panels<const PANELS: usize>(self, row: &[BinPair], panels: [&[PanelRow]; PANELS]) -> i32 {
         as_far_as_all_go(panels).into_iter().fold(0, |best, panel| best.max(self.best_coefficient(row, panel)))
+    }
+
+    /// Raises `best`, a number for each of `rows`, to the row's best coefficient with one panel.
+    #[inline(always)]
+    fn raise_best<'a>(self, rows: impl Iterator<Item = &'a [BinPair]>, panel: &[PanelRow], best: &mut [i32]) {
+        for (row, best) in rows.zip(best) {
+            *best = (*best).max(self.best_coefficient(row, panel));
+        }
     }
 
     /// Hints that a panel's row will soon be read.
