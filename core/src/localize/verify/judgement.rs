@@ -18,6 +18,8 @@ pub(super) struct Judgement {
     pub(super) best: Hypothesis,
     /// Lead over the best rival, times the [weight of what was seen](seen_weight).
     pub(super) confidence: f32,
+    /// How far the best lies from the node nearest to it \[m\].
+    pub(super) from_node_m: f32,
     /// The best and its rivals, with probabilities that sum to one.
     pub(super) places: Rivals,
 }
@@ -34,6 +36,8 @@ pub(super) fn judge(
     let behind = |hypothesis: &Hypothesis| (best.score_q20 - hypothesis.score_q20) as f32 * scale;
     let mut places = Rivals::default();
     let mut confidence = f32::INFINITY;
+    let here = best.world_position_at(&last, database);
+    let from_node_m = nearest_node(database, here).map_or(0.0, |node| node.position().distance(here));
     for next in hypotheses {
         let here = next.world_position_at(&last, database);
         if places.iter().any(|place: &Rival| place.position.distance(here) <= PLACE_RADIUS_M) {
@@ -52,7 +56,7 @@ pub(super) fn judge(
         }
     }
     places.normalize();
-    Some(Judgement { best, confidence, places })
+    Some(Judgement { best, confidence, from_node_m, places })
 }
 
 /// Weight of a lead: each segment is a witness, and their errors average out. Thirty of them weigh one.

@@ -108,6 +108,11 @@ impl<'m> Search<'m> {
         &self.ranked[..self.ranked_count]
     }
 
+    /// How far the grid about every node reaches along an axis \[m\].
+    pub(super) fn reach_m(&self) -> f32 {
+        self.cell_m * f32::from(self.config.cells_per_side / 2)
+    }
+
     /// The nodes that have a grid, where a first stage chooses them.
     pub(super) const fn slots(&self) -> &Slots<'m> {
         &self.slots

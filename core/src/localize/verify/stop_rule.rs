@@ -3,7 +3,8 @@
 //! A sequential test: the lead of the best place over its best rival says whether it is that place rather than another of
 //! the map, and its agreement with what was seen, measured against the map's agreement with itself, whether it is in the
 //! map at all. Early, both have to be clear, the first look alone most of all; what agreement lacks a lead may make up for.
-//! The more the robot has looked around, the less is asked: what it could not learn by then no turn will tell.
+//! The more the robot has looked around, the less is asked: what it could not learn by then no turn will tell. A place at
+//! the edge of what the nodes cover is most often one beyond it, seen along the same line of sight: more is asked there.
 
 use super::judgement::Judgement;
 use crate::math;
@@ -30,6 +31,12 @@ const TELLING_SEGMENTS: usize = 75;
 const CONTRADICTION: f32 = 0.25;
 /// A lead this clear no look contradicts: the map may have changed; in confidences asked for.
 const BEYOND_DOUBT: f32 = 2.5;
+/// Farther than this from every node a place is at the edge, as a share of how far the nodes' grids reach.
+const EDGE: f32 = 0.85;
+/// Lead asked for at the edge, in leads asked for elsewhere.
+const EDGE_LEAD: f32 = 2.0;
+/// A telling look contradicts a place at the edge that it agrees less with than this, whatever the lead.
+const EDGE_CONTRADICTION: f32 = 0.4;
 /// The map's agreement with itself, where it was not measured: what a good calibration gives.
 const USUAL_AGREEMENT: f32 = 0.5;
 
@@ -51,12 +58,13 @@ pub(super) enum Looked {
 pub(super) struct StopRule {
     confidence: f32,
     self_agreement: f32,
+    edge_m: f32,
 }
 
 impl StopRule {
-    /// The rule for a map that agrees with itself so, as far as is known.
-    pub(super) fn new(confidence: f32, self_agreement: Option<f32>) -> Self {
-        Self { confidence, self_agreement: self_agreement.unwrap_or(USUAL_AGREEMENT) }
+    /// The rule for a map that agrees with itself so, as far as is known, and whose grids reach so far.
+    pub(super) fn new(confidence: f32, self_agreement: Option<f32>, reach_m: f32) -> Self {
+        Self { confidence, self_agreement: self_agreement.unwrap_or(USUAL_AGREEMENT), edge_m: EDGE * reach_m }
     }
 
     /// Whether lead and agreement of the best place suffice.
@@ -70,7 +78,8 @@ impl StopRule {
             Looked::AllAround => (AROUND_CONFIDENCE, LEAST_AGREEMENT),
             Looked::AtEverything => (LAST_CONFIDENCE, INSIDE_AGREEMENT),
         };
-        lead > least_lead * self.confidence && agreement >= least_agreement
+        let at_edge = if self.is_at_edge(judgement) { EDGE_LEAD } else { 1.0 };
+        lead > at_edge * least_lead * self.confidence && agreement >= least_agreement
     }
 
     /// Whether the best place agrees well enough for the robot to be in the map.
@@ -85,12 +94,18 @@ impl StopRule {
 
     /// Whether the lead is so clear that no look contradicts it.
     pub(super) fn is_beyond_doubt(&self, judgement: &Judgement) -> bool {
-        judgement.confidence > BEYOND_DOUBT * self.confidence
+        judgement.confidence > BEYOND_DOUBT * self.confidence && !self.is_at_edge(judgement)
     }
 
-    /// Whether a look of so many segments that agrees so contradicts a place.
-    pub(super) fn contradicts(&self, segment_count: usize, score_q20: i32) -> bool {
-        segment_count >= TELLING_SEGMENTS && self.agreement(score_q20) < CONTRADICTION
+    /// Whether a look of so many segments that agrees so contradicts the best place.
+    pub(super) fn contradicts(&self, judgement: &Judgement, segment_count: usize, score_q20: i32) -> bool {
+        let least = if self.is_at_edge(judgement) { EDGE_CONTRADICTION } else { CONTRADICTION };
+        segment_count >= TELLING_SEGMENTS && self.agreement(score_q20) < least
+    }
+
+    /// Whether the best place lies at the edge of what the nodes cover.
+    fn is_at_edge(&self, judgement: &Judgement) -> bool {
+        judgement.from_node_m > self.edge_m
     }
 
     /// A score as a share of the map's agreement with itself.
@@ -109,12 +124,12 @@ mod tests {
     fn judgement(confidence: f32, agreement: f32) -> Judgement {
         let score_q20 = (agreement * 0.5 * (1 << 20) as f32) as i32;
         let best = Hypothesis { score_q20, ..Hypothesis::new(NodeId(0), [0.0; 2], 0.0) };
-        Judgement { best, confidence, places: Rivals::default() }
+        Judgement { best, confidence, from_node_m: 0.5, places: Rivals::default() }
     }
 
     #[test]
     fn the_more_was_looked_at_the_less_is_asked() {
-        let rule = StopRule::new(0.4, Some(0.5));
+        let rule = StopRule::new(0.4, Some(0.5), 1.2);
         let asked = [Looked::Once, Looked::Partly, Looked::AllAround, Looked::AtEverything];
         for (confidence, expected) in [(0.6, 4), (0.5, 3), (0.3, 2), (0.1, 1), (0.05, 0)] {
             let judgement = judgement(confidence, 1.3);
@@ -125,7 +140,7 @@ mod tests {
 
     #[test]
     fn a_clear_lead_makes_up_for_agreement_but_not_for_any() {
-        let rule = StopRule::new(0.4, Some(0.5));
+        let rule = StopRule::new(0.4, Some(0.5), 1.2);
         let suffices = |confidence, agreement| rule.suffices(&judgement(confidence, agreement), Looked::Partly);
         assert!(suffices(0.45, 1.25) && !suffices(0.45, 1.1));
         assert!(suffices(0.8, 1.1) && !suffices(0.8, 1.0));
@@ -134,13 +149,27 @@ mod tests {
 
     #[test]
     fn a_rich_look_that_agrees_with_nothing_contradicts_and_a_poor_one_does_not() {
-        let rule = StopRule::new(0.4, Some(0.5));
-        assert!(rule.contradicts(100, 0) && !rule.contradicts(10, 0) && !rule.contradicts(100, 1 << 18));
+        let rule = StopRule::new(0.4, Some(0.5), 1.2);
+        let best = judgement(0.5, 1.0);
+        let contradicts = |count, score_q20| rule.contradicts(&best, count, score_q20);
+        assert!(contradicts(100, 0) && !contradicts(10, 0) && !contradicts(100, 1 << 18));
+    }
+
+    #[test]
+    fn at_the_edge_of_what_the_nodes_cover_twice_the_lead_is_asked_and_looks_contradict_sooner() {
+        let rule = StopRule::new(0.4, Some(0.5), 1.2);
+        let at = |from_node_m| Judgement { from_node_m, ..judgement(1.2, 1.3) };
+        let (inner, edge) = (at(1.0), at(1.05));
+        assert!(rule.is_beyond_doubt(&inner) && !rule.is_beyond_doubt(&edge));
+        let third_q20 = (0.5 * 0.33 * (1 << 20) as f32) as i32;
+        assert!(rule.contradicts(&edge, 100, third_q20) && !rule.contradicts(&inner, 100, third_q20));
+        let suffices = |confidence| rule.suffices(&Judgement { confidence, ..edge }, Looked::Partly);
+        assert!(suffices(0.85) && !suffices(0.75));
     }
 
     #[test]
     fn without_a_measured_agreement_a_usual_one_is_assumed() {
-        let (known, unknown) = (StopRule::new(0.4, Some(USUAL_AGREEMENT)), StopRule::new(0.4, None));
+        let (known, unknown) = (StopRule::new(0.4, Some(USUAL_AGREEMENT), 1.2), StopRule::new(0.4, None, 1.2));
         for agreement in [0.7, 0.8] {
             let judgement = judgement(1.0, agreement);
             assert_eq!(known.is_inside(&judgement), unknown.is_inside(&judgement));

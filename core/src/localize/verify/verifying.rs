@@ -60,16 +60,17 @@ impl<'m> VerifyingLocalizer<'m> {
             Shortlist::new(stage, memory.codes, memory.chosen)
         });
         let search_memory = (memory.cells, memory.ranked, memory.refined, memory.children);
+        let search = Search::new(verification, &database, Slots::new(memory.slots), search_memory);
         Ok(Self {
             database,
             config,
             verification: *verification,
             moves: Moves::default(),
-            stop_rule: StopRule::new(verification.confidence, database.self_agreement()),
+            stop_rule: StopRule::new(verification.confidence, database.self_agreement(), search.reach_m()),
             checker: Checker::new(database.rig(), SegmentFilter::new(&config), memory.planes, memory.view),
             looks: KeptLooks::new(memory.poses, memory.segments, config.max_segments),
             shortlist,
-            search: Search::new(verification, &database, Slots::new(memory.slots), search_memory),
+            search,
             candidates: CandidateSet::new(memory.node_scores),
             is_finished: false,
         })
@@ -140,7 +141,7 @@ impl<'m> VerifyingLocalizer<'m> {
             && !is_poor
             && self.stop_rule.suffices(judgement, looked)
         {
-            if self.stop_rule.is_beyond_doubt(judgement) || !self.is_contradicted(&judgement.best) {
+            if self.stop_rule.is_beyond_doubt(judgement) || !self.is_contradicted(judgement) {
                 return Decision::Localized(self.localized(judgement));
             }
             is_inside = false;
@@ -159,11 +160,11 @@ impl<'m> VerifyingLocalizer<'m> {
     }
 
     /// Whether a look that shows much agrees with nothing there.
-    fn is_contradicted(&mut self, best: &Hypothesis) -> bool {
+    fn is_contradicted(&mut self, judgement: &Judgement) -> bool {
         let Self { database, checker, looks, stop_rule, .. } = self;
         (0..looks.count()).any(|look| {
-            let score_q20 = agreement_of_look(best, look, database, checker, looks);
-            stop_rule.contradicts(looks.segments(look).len(), score_q20)
+            let score_q20 = agreement_of_look(&judgement.best, look, database, checker, looks);
+            stop_rule.contradicts(judgement, looks.segments(look).len(), score_q20)
         })
     }
 
