@@ -11,6 +11,11 @@ use crate::math;
 
 /// Confidence that the first look alone asks for, in confidences asked for.
 const FIRST_CONFIDENCE: f32 = 1.25;
+/// Segments a node beyond which a map is crowded: by chance places resemble each other more, and the first look alone has
+/// to say more, in proportion up to [`MOST_CROWDED`].
+const CROWDED: f32 = 540.0;
+/// The most that a crowded map asks of the first look, in what others ask.
+const MOST_CROWDED: f32 = 1.5;
 /// Having looked all around, before a move.
 const AROUND_CONFIDENCE: f32 = 0.45;
 /// When nothing is left to look at.
@@ -57,14 +62,32 @@ pub(super) enum Looked {
 #[derive(Debug)]
 pub(super) struct StopRule {
     confidence: f32,
+    first_confidence: f32,
     self_agreement: f32,
     edge_m: f32,
 }
 
+/// What the rule has to know of a map.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct MapTraits {
+    /// Its agreement with itself, as far as it was measured.
+    pub(super) self_agreement: Option<f32>,
+    /// How far the grids of its nodes reach \[m\].
+    pub(super) reach_m: f32,
+    /// Segments of a node's model in the mean.
+    pub(super) segments_per_node: f32,
+}
+
 impl StopRule {
-    /// The rule for a map that agrees with itself so, as far as is known, and whose grids reach so far.
-    pub(super) fn new(confidence: f32, self_agreement: Option<f32>, reach_m: f32) -> Self {
-        Self { confidence, self_agreement: self_agreement.unwrap_or(USUAL_AGREEMENT), edge_m: EDGE * reach_m }
+    /// The rule for a map.
+    pub(super) fn new(confidence: f32, map: &MapTraits) -> Self {
+        let crowded = math::max(1.0, math::min(map.segments_per_node / CROWDED, MOST_CROWDED));
+        Self {
+            confidence,
+            first_confidence: FIRST_CONFIDENCE * crowded,
+            self_agreement: map.self_agreement.unwrap_or(USUAL_AGREEMENT),
+            edge_m: EDGE * map.reach_m,
+        }
     }
 
     /// Whether lead and agreement of the best place suffice.
@@ -73,7 +96,7 @@ impl StopRule {
         let made_up = AGREEMENT_PER_CONFIDENCE * (lead - self.confidence);
         let early = math::max(ASKED_AGREEMENT - made_up, LEAST_AGREEMENT);
         let (least_lead, least_agreement) = match looked {
-            Looked::Once => (FIRST_CONFIDENCE, early),
+            Looked::Once => (self.first_confidence, early),
             Looked::Partly => (1.0, early),
             Looked::AllAround => (AROUND_CONFIDENCE, LEAST_AGREEMENT),
             Looked::AtEverything => (LAST_CONFIDENCE, INSIDE_AGREEMENT),
@@ -121,6 +144,8 @@ mod tests {
     use crate::database::NodeId;
     use crate::localize::Rivals;
 
+    const MAP: MapTraits = MapTraits { self_agreement: Some(0.5), reach_m: 1.2, segments_per_node: 360.0 };
+
     fn judgement(confidence: f32, agreement: f32) -> Judgement {
         let score_q20 = (agreement * 0.5 * (1 << 20) as f32) as i32;
         let best = Hypothesis { score_q20, ..Hypothesis::new(NodeId(0), [0.0; 2], 0.0) };
@@ -129,7 +154,7 @@ mod tests {
 
     #[test]
     fn the_more_was_looked_at_the_less_is_asked() {
-        let rule = StopRule::new(0.4, Some(0.5), 1.2);
+        let rule = StopRule::new(0.4, &MAP);
         let asked = [Looked::Once, Looked::Partly, Looked::AllAround, Looked::AtEverything];
         for (confidence, expected) in [(0.6, 4), (0.5, 3), (0.3, 2), (0.1, 1), (0.05, 0)] {
             let judgement = judgement(confidence, 1.3);
@@ -140,7 +165,7 @@ mod tests {
 
     #[test]
     fn a_clear_lead_makes_up_for_agreement_but_not_for_any() {
-        let rule = StopRule::new(0.4, Some(0.5), 1.2);
+        let rule = StopRule::new(0.4, &MAP);
         let suffices = |confidence, agreement| rule.suffices(&judgement(confidence, agreement), Looked::Partly);
         assert!(suffices(0.45, 1.25) && !suffices(0.45, 1.1));
         assert!(suffices(0.8, 1.1) && !suffices(0.8, 1.0));
@@ -149,15 +174,24 @@ mod tests {
 
     #[test]
     fn a_rich_look_that_agrees_with_nothing_contradicts_and_a_poor_one_does_not() {
-        let rule = StopRule::new(0.4, Some(0.5), 1.2);
+        let rule = StopRule::new(0.4, &MAP);
         let best = judgement(0.5, 1.0);
         let contradicts = |count, score_q20| rule.contradicts(&best, count, score_q20);
         assert!(contradicts(100, 0) && !contradicts(10, 0) && !contradicts(100, 1 << 18));
     }
 
     #[test]
+    fn in_a_crowded_map_the_first_look_has_to_say_more() {
+        let suffices = |segments_per_node, looked| {
+            StopRule::new(0.4, &MapTraits { segments_per_node, ..MAP }).suffices(&judgement(0.55, 1.3), looked)
+        };
+        assert!(suffices(500.0, Looked::Once) && !suffices(700.0, Looked::Once));
+        assert!(suffices(700.0, Looked::Partly));
+    }
+
+    #[test]
     fn at_the_edge_of_what_the_nodes_cover_twice_the_lead_is_asked_and_looks_contradict_sooner() {
-        let rule = StopRule::new(0.4, Some(0.5), 1.2);
+        let rule = StopRule::new(0.4, &MAP);
         let at = |from_node_m| Judgement { from_node_m, ..judgement(1.2, 1.3) };
         let (inner, edge) = (at(1.0), at(1.05));
         assert!(rule.is_beyond_doubt(&inner) && !rule.is_beyond_doubt(&edge));
@@ -169,7 +203,8 @@ mod tests {
 
     #[test]
     fn without_a_measured_agreement_a_usual_one_is_assumed() {
-        let (known, unknown) = (StopRule::new(0.4, Some(USUAL_AGREEMENT), 1.2), StopRule::new(0.4, None, 1.2));
+        let rule_of = |self_agreement| StopRule::new(0.4, &MapTraits { self_agreement, ..MAP });
+        let (known, unknown) = (rule_of(Some(USUAL_AGREEMENT)), rule_of(None));
         for agreement in [0.7, 0.8] {
             let judgement = judgement(1.0, agreement);
             assert_eq!(known.is_inside(&judgement), unknown.is_inside(&judgement));

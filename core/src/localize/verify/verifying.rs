@@ -11,7 +11,7 @@ use super::pose_fit::fit;
 use super::search::{Search, agreement_of_look};
 use super::shortlist::Shortlist;
 use super::slots::Slots;
-use super::stop_rule::{Looked, StopRule};
+use super::stop_rule::{Looked, MapTraits, StopRule};
 use super::{NextLook, VerificationConfig};
 use crate::database::TopologicalDatabase;
 use crate::geometry::{Angle, Heading, Point2};
@@ -61,12 +61,17 @@ impl<'m> VerifyingLocalizer<'m> {
         });
         let search_memory = (memory.cells, memory.ranked, memory.refined, memory.children);
         let search = Search::new(verification, &database, Slots::new(memory.slots), search_memory);
+        let map_traits = MapTraits {
+            self_agreement: database.self_agreement(),
+            reach_m: search.reach_m(),
+            segments_per_node: database.segment_count() as f32 / database.node_count().max(1) as f32,
+        };
         Ok(Self {
             database,
             config,
             verification: *verification,
             moves: Moves::default(),
-            stop_rule: StopRule::new(verification.confidence, database.self_agreement(), search.reach_m()),
+            stop_rule: StopRule::new(verification.confidence, &map_traits),
             checker: Checker::new(database.rig(), SegmentFilter::new(&config), memory.planes, memory.view),
             looks: KeptLooks::new(memory.poses, memory.segments, config.max_segments),
             shortlist,
