@@ -128,6 +128,7 @@ fn check_localizer(localizer: &LocalizerSettings) -> Result<(), IllegalValue> {
     within("localizer.pgh.angle_bins", pgh.angle_bins, 1..=256, "the paper's best is 32")?;
     within("localizer.pgh.max_distance_px", pgh.max_distance_px, 1.0..=2048.0, "200 to 600 hardly matter")?;
     within("localizer.verification.cells_per_side", verification.cells_per_side, 3..=31, "7 is the default")?;
+    within("localizer.verification.reach", verification.reach, 0.1..=2.0, "0.8 is the default")?;
     within("localizer.verification.headings", verification.headings, 1..=9, "4 without a compass")?;
     let cells = verification.cells_per_side;
     require(cells % 2 == 1, "localizer.verification.cells_per_side", &cells, "an odd number", || {

@@ -116,6 +116,8 @@ impl Default for PghSettings {
 pub struct VerificationSettings {
     /// Positions tried along either side of the square about each node; odd.
     pub cells_per_side: u16,
+    /// How far that square reaches to either side, in distances from a node to the next.
+    pub reach: f64,
     /// Headings that may be tried in every cell: 1 does for 2.5 degrees, 3 beyond, 4 without a compass.
     pub headings: u16,
     /// Lead of the best over its best rival, times the root of the segments seen in thirties, that is answered.
@@ -144,26 +146,35 @@ pub enum NextLookKind {
 
 impl Default for VerificationSettings {
     fn default() -> Self {
-        let VerificationConfig { cells_per_side, headings, confidence, refined, finalists, next_look, moves, move_m } =
-            VerificationConfig::reference();
+        let VerificationConfig {
+            cells_per_side,
+            reach,
+            headings,
+            confidence,
+            refined,
+            finalists,
+            next_look,
+            moves,
+            move_m,
+        } = VerificationConfig::reference();
         let next_look = match next_look {
             NextLook::Fixed => NextLookKind::Fixed,
             NextLook::Predicted => NextLookKind::Predicted,
         };
-        let (confidence, move_m) = (decimal(confidence), decimal(move_m));
-        Self { cells_per_side, headings, confidence, refined, finalists, next_look, moves, move_m }
+        let (reach, confidence, move_m) = (decimal(reach), decimal(confidence), decimal(move_m));
+        Self { cells_per_side, reach, headings, confidence, refined, finalists, next_look, moves, move_m }
     }
 }
 
 impl VerificationSettings {
     fn config(&self) -> VerificationConfig {
-        let Self { cells_per_side, headings, confidence, refined, finalists, next_look, moves, move_m } = *self;
+        let Self { cells_per_side, reach, headings, confidence, refined, finalists, next_look, moves, move_m } = *self;
         let next_look = match next_look {
             NextLookKind::Fixed => NextLook::Fixed,
             NextLookKind::Predicted => NextLook::Predicted,
         };
-        let (confidence, move_m) = (confidence as f32, move_m as f32);
-        VerificationConfig { cells_per_side, headings, confidence, refined, finalists, next_look, moves, move_m }
+        let (reach, confidence, move_m) = (reach as f32, confidence as f32, move_m as f32);
+        VerificationConfig { cells_per_side, reach, headings, confidence, refined, finalists, next_look, moves, move_m }
     }
 }
 

@@ -69,6 +69,7 @@ fn write_config(bytes: &mut Vec<u8>, config: &LocalizerConfig) {
     let verifies = config.verification.is_some();
     let zeros = VerificationConfig {
         cells_per_side: 0,
+        reach: 0.0,
         headings: 0,
         confidence: 0.0,
         refined: 0,
@@ -83,6 +84,7 @@ fn write_config(bytes: &mut Vec<u8>, config: &LocalizerConfig) {
     for number in [cells_per_side, headings, refined, finalists, moves] {
         bytes.extend(number.to_le_bytes());
     }
+    bytes.extend(verification.reach.to_le_bytes());
     bytes.extend(verification.confidence.to_le_bytes());
     bytes.extend(verification.move_m.to_le_bytes());
 }

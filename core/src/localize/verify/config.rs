@@ -9,6 +9,8 @@ pub struct VerificationConfig {
     /// Positions tried along either side of the square about each node, odd, 3 to 31. How far apart they lie follows
     /// from the spacing of the nodes, so that the squares reach the neighbours.
     pub cells_per_side: u16,
+    /// How far that square reaches to either side, in distances from a node to the next, 0.1 to 2; at most 2 m.
+    pub reach: f32,
     /// Headings that may be tried in every cell of the grid, 1 to 9: one does for a compass that errs up to 2.5 degrees,
     /// three beyond; a robot without a compass needs four, along and across the building.
     pub headings: u16,
@@ -49,6 +51,7 @@ impl VerificationConfig {
     pub const fn reference() -> Self {
         Self {
             cells_per_side: 7,
+            reach: 0.8,
             headings: 4,
             confidence: 0.4,
             refined: 56,
@@ -64,6 +67,7 @@ impl VerificationConfig {
         let is_odd = self.cells_per_side % 2 == 1;
         is_odd
             && (3..=31).contains(&self.cells_per_side)
+            && (0.1..=2.0).contains(&self.reach)
             && (1..=MAX_HEADINGS as u16).contains(&self.headings)
             && (0.0..=100.0).contains(&self.confidence)
             && (1..=256).contains(&self.refined)

@@ -76,7 +76,7 @@ impl<'m> Search<'m> {
     ) -> Self {
         let mut search = Self {
             config: *config,
-            cell_m: reach_m(database) / f32::from(config.cells_per_side / 2),
+            cell_m: reach_m(database, config.reach) / f32::from(config.cells_per_side / 2),
             headings: Headings::about_compass(0.0, 1),
             dominant_rad: None,
             slots,

@@ -3,8 +3,6 @@
 use crate::database::{Node, TopologicalDatabase};
 use crate::math;
 
-/// Part of the way from a node to the nearest other that its grid reaches: past the corners of its Voronoi cell.
-const REACH: f32 = 0.8;
 /// Least and greatest reach \[m\].
 const REACH_LIMITS_M: [f32; 2] = [0.6, 2.0];
 
@@ -19,11 +17,12 @@ fn nearest_other_m(database: &TopologicalDatabase<'_>, node: &Node<'_>) -> f32 {
     others.map(|other| other.position().distance(node.position())).fold(f32::INFINITY, math::min)
 }
 
-/// How far the grid about every node reaches along an axis \[m\], from the mean spacing of the nodes.
-pub(super) fn reach_m(database: &TopologicalDatabase<'_>) -> f32 {
+/// How far the grid about every node reaches along an axis \[m\]: `share` of the mean spacing of the nodes. With 0.8 it
+/// reaches past the corners of their Voronoi cells.
+pub(super) fn reach_m(database: &TopologicalDatabase<'_>, share: f32) -> f32 {
     let count = database.node_count();
     let step = if count > MOST_NODES { count.div_ceil(ASKED_NODES) } else { 1 };
     let sum = database.nodes().step_by(step).fold(0.0, |sum, node| sum + nearest_other_m(database, &node));
-    let wanted = REACH * sum / count.div_ceil(step) as f32;
+    let wanted = share * sum / count.div_ceil(step) as f32;
     math::max(REACH_LIMITS_M[0], math::min(wanted, REACH_LIMITS_M[1]))
 }
