@@ -1,7 +1,7 @@
 //! The legal range of every value of a scenario.
 
 use super::error::IllegalValue;
-use super::{Building, LocalizerSettings, Scenario, VisibilityChoice};
+use super::{Building, LocalizerKind, LocalizerSettings, Scenario, VisibilityChoice};
 use edgeloc::geometry::StereoRig;
 use std::fmt::Display;
 use std::ops::RangeInclusive;
@@ -36,7 +36,23 @@ impl Scenario {
         self.check_world()?;
         self.check_rig()?;
         check_localizer(&self.localizer)?;
-        self.check_uncertainty()
+        self.check_uncertainty()?;
+        self.check_sensors()
+    }
+
+    /// Whether the robot has what its localiser can't do without.
+    fn check_sensors(&self) -> Result<(), IllegalValue> {
+        let (compass, odometry) = (&self.uncertainty.compass, &self.uncertainty.odometry);
+        let (legal, does) = match self.localizer.kind {
+            LocalizerKind::Paper => ("true: the paper's localiser asks for a heading", compass.available),
+            LocalizerKind::Edgeloc => {
+                let looks_once = self.localizer.max_looks == 1;
+                ("true, of a robot without odometry", compass.available || odometry.available || looks_once)
+            }
+        };
+        require(does, "uncertainty.compass.available", &compass.available, legal, || {
+            "every trial would fail; give the robot a compass, or the localiser of kind edgeloc and odometry".to_owned()
+        })
     }
 
     fn check_name(&self) -> Result<(), IllegalValue> {
@@ -223,6 +239,22 @@ mod tests {
     }
 
     #[cfg(unix)]
+    #[test]
+    fn a_robot_without_what_its_localiser_needs_is_refused() {
+        let sensors = |kind, has_compass, has_odometry| {
+            let mut scenario = Scenario::default();
+            scenario.localizer.kind = kind;
+            scenario.uncertainty.compass.available = has_compass;
+            scenario.uncertainty.odometry.available = has_odometry;
+            scenario.check().map_err(|error| error.key)
+        };
+        let refused = Err("uncertainty.compass.available".to_owned());
+        assert_eq!(sensors(LocalizerKind::Paper, false, true), refused);
+        assert_eq!(sensors(LocalizerKind::Edgeloc, false, false), refused);
+        assert_eq!(sensors(LocalizerKind::Edgeloc, false, true), Ok(()));
+        assert_eq!(sensors(LocalizerKind::Edgeloc, true, false), Ok(()));
+    }
+
     #[test]
     fn a_world_path_that_no_text_can_hold_is_refused() {
         use std::os::unix::ffi::OsStrExt;
