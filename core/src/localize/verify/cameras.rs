@@ -6,8 +6,6 @@ use crate::math;
 
 /// Cameras that are checked together at most.
 pub(super) const BATCH: usize = 16;
-/// Farther than this from a plane all cameras agree on which side a point lies, whatever is rounded; in the plane's unit.
-const MARGIN: f32 = 1e-3;
 
 /// Cameras in one frame, that of the turned model, which look along its axis.
 #[derive(Debug)]
@@ -76,8 +74,8 @@ impl Cameras {
     fn plane_across<const PLANE: usize>(&self, start: [f32; 3], end: [f32; 3]) -> Option<u8> {
         let [least, most] = self.reaches[PLANE];
         let (from, to) = (self.frustum.inside::<PLANE>(start), self.frustum.inside::<PLANE>(end));
-        let is_outside = (from + most < -MARGIN) & (to + most < -MARGIN);
-        let is_inside = (from + least > MARGIN) & (to + least > MARGIN);
+        let is_outside = (from + most < 0.0) & (to + most < 0.0);
+        let is_inside = (from + least >= 0.0) & (to + least >= 0.0);
         (!is_outside).then_some(u8::from(!is_inside) << PLANE)
     }
 

@@ -43,3 +43,32 @@ fn step_along<'p>(row: impl Iterator<Item = &'p mut Pixel>) {
         beside = *pixel;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::distance_planes::ROWS;
+    use super::*;
+    use std::vec;
+
+    #[test]
+    fn each_pixel_is_as_far_as_the_shortest_way_over_the_grid_to_a_drawn_one() {
+        let drawn = [(0, [3, 7], 0), (0, [150, 100], 2), (0, [80, 0], 4), (5, [159, 119], 0), (5, [20, 60], 1)];
+        let mut pixels = vec![FAR; COLUMNS * ROWS];
+        for (channel, [column, row], distance) in drawn {
+            pixels[row * COLUMNS + column][channel] = distance;
+        }
+        spread(&mut pixels);
+        for (index, pixel) in pixels.iter().enumerate() {
+            let (column, row) = (index % COLUMNS, index / COLUMNS);
+            for (channel, distance) in pixel.iter().enumerate() {
+                let ways = drawn.iter().filter(|from| from.0 == channel).map(|(_, [from_column, from_row], from)| {
+                    let (across, down) = (column.abs_diff(*from_column), row.abs_diff(*from_row));
+                    let slanted = across.min(down);
+                    usize::from(*from) + 7 * slanted + 5 * (across.max(down) - slanted)
+                });
+                let nearest = ways.min().unwrap_or(usize::MAX).min(255);
+                assert_eq!(usize::from(*distance), nearest, "channel {channel} at {column}, {row}");
+            }
+        }
+    }
+}
