@@ -121,8 +121,8 @@ impl<'m> Masses<'m> {
         let stride = stride_of(self.angle_bins, BLOCK) as i32;
         for i in 0..BLOCK {
             let (first, last) = (shares.first[i], shares.last[i]);
-            add_shares(self.ends, first, shares.in_first[i]);
-            add_shares(self.ends, last, shares.in_last[i]);
+            add_pair(self.ends, first, &shares.in_first[i]);
+            add_pair(self.ends, last, &shares.in_last[i]);
             if last - first > stride {
                 add_pair(self.steps, first + stride, &shares.in_between[i]);
                 add_pair(self.steps, last, &shares.in_between[i].map(i32::wrapping_neg));
@@ -175,7 +175,7 @@ impl<'m> Masses<'m> {
         for first in pairs.clone().step_by(32) {
             let mut filled = 0_u32;
             for (bit, [even, odd]) in bins[first..pairs.end].iter().take(32).enumerate() {
-                filled |= u32::from(even | odd != 0) << bit;
+                filled |= if even | odd != 0 { 1 << bit } else { 0 };
             }
             while filled != 0 {
                 let index = first + filled.trailing_zeros() as usize;
@@ -246,16 +246,5 @@ fn add_pair(grid: &mut [i32], place: i32, pair: &[i32; 2]) {
     if let Some([a, b]) = grid.get_mut(place..place + 2) {
         *a += pair[0];
         *b += pair[1];
-    }
-}
-
-/// The same for shares as they lie in memory.
-#[inline(always)]
-fn add_shares(grid: &mut [i32], place: i32, shares: u64) {
-    let place = place as u32 as usize;
-    if let Some(bins) = grid.get_mut(place..place + 2).and_then(<[i32]>::first_chunk_mut::<2>) {
-        // Neither half is negative or grows beyond i32: none carries into the other.
-        let both: u64 = zerocopy::transmute!(*bins);
-        *bins = zerocopy::transmute!(both.wrapping_add(shares));
     }
 }
