@@ -34,6 +34,8 @@ pub struct Workload {
 pub struct LookWorkload {
     /// A short name.
     pub name: &'static str,
+    /// How the localiser is set.
+    pub config: LocalizerConfig,
     /// The map's bytes.
     pub database: Vec<u8>,
     /// Nodes in the map.
@@ -48,6 +50,23 @@ pub struct LookWorkload {
     pub expected_score_q30: i64,
     /// Candidates left, the leader among them.
     pub expected_candidates: usize,
+}
+
+/// One look and poses beside a node that it may have been taken from.
+#[derive(Debug, Clone)]
+pub struct PoseWorkload {
+    /// A short name.
+    pub name: &'static str,
+    /// Bytes of a map of that node alone.
+    pub database: Vec<u8>,
+    /// Where the poses are, from the node \[m\].
+    pub offsets: Vec<[f32; 2]>,
+    /// Heading of the look.
+    pub heading: Heading,
+    /// The segments of the look.
+    pub scene: Vec<Segment2>,
+    /// What is explained for all poses together, and what would be in perfect agreement, in Q4 px.
+    pub expected_evidence_q4: (i32, i32),
 }
 
 /// Every scene with its view, published settings.
@@ -74,15 +93,17 @@ pub fn scenes() -> Vec<Workload> {
     ]
 }
 
-/// One look at a small and at the reference number of nodes.
+/// One look at a small and at the reference number of nodes, of the paper's localiser and of the verifying one.
 #[must_use]
 pub fn looks() -> Vec<LookWorkload> {
+    let (paper, verifying) = (LocalizerConfig::paper(), LocalizerConfig::edgeloc());
     let world = random_room(1, BOXES);
-    let look = |name, nodes: usize, expected_leader, expected_score_q30, expected_candidates| {
+    let look = |name, config, nodes: usize, (expected_leader, expected_score_q30, expected_candidates)| {
         let models: Vec<_> =
             random_positions(4, nodes).into_iter().map(|position| all_seeing_node(&world, &RIG, position)).collect();
         LookWorkload {
             name,
+            config,
             database: database_bytes(&RIG, &models),
             nodes,
             heading: heading(),
@@ -92,7 +113,36 @@ pub fn looks() -> Vec<LookWorkload> {
             expected_candidates,
         }
     };
-    vec![look("8_nodes", 8, 7, 916_674_167, 4), look("72_nodes", 72, 12, 937_130_882, 32)]
+    vec![
+        look("8_nodes", paper, 8, (7, 916_674_167, 4)),
+        look("72_nodes", paper, 72, (12, 937_130_882, 32)),
+        look("8_nodes_verified", verifying, 8, (7, 766_126_080, 8)),
+        look("72_nodes_verified", verifying, 72, (12, 681_707_520, 72)),
+    ]
+}
+
+/// Looks at a node's place and poses around the one that they were taken from.
+#[must_use]
+pub fn poses() -> Vec<PoseWorkload> {
+    let database = database_bytes(&RIG, &[all_seeing_node(&random_room(1, BOXES), &RIG, VIEWPOINT)]);
+    let true_offset = [BESIDE.x - VIEWPOINT.x, BESIDE.y - VIEWPOINT.y];
+    let around = [[0.0, 0.0], [0.1, 0.0], [0.0, -0.1], [0.3, 0.3], [-0.3, 0.3], [0.3, -0.3], [-0.3, -0.3], [1.0, 0.5]];
+    let offsets: Vec<[f32; 2]> = around.iter().map(|[x, y]| [true_offset[0] + x, true_offset[1] + y]).collect();
+    let workload = |name, scene: Vec<Segment2>, expected_evidence_q4| PoseWorkload {
+        name,
+        database: database.clone(),
+        offsets: offsets.clone(),
+        heading: heading(),
+        scene,
+        expected_evidence_q4,
+    };
+    vec![
+        workload("empty", Vec::new(), (0, 2_192_296)),
+        workload("bare_wall", seen_from(BESIDE, 3), (70_459, 2_141_568)),
+        workload("typical", seen_from(BESIDE, 112), (593_105, 1_493_408)),
+        workload("crowded", seen_from(BESIDE, 240), (690_893, 1_187_596)),
+        workload("all_crossing", crossing(150), (75_534, 577_419)),
+    ]
 }
 
 /// Where the view was learned, and where the scene is seen from: 0.3 m apart.

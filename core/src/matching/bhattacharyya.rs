@@ -249,8 +249,8 @@ fn meet<'a, 'p, const PANELS: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Point2, Polarity, Segment2};
-    use crate::pgh::{DistanceKind, LineBlock, PghShape};
+    use crate::pgh::strategies::{any_segments, any_shape};
+    use crate::pgh::{LineBlock, PghShape};
     use proptest::prelude::*;
     use std::vec;
     use std::vec::Vec;
@@ -284,32 +284,9 @@ mod tests {
         }
     }
 
-    fn segment() -> impl Strategy<Value = Segment2> {
-        let point = |reach: f32| (-reach..reach, -reach..reach).prop_map(|(x, y)| Point2::new(x, y));
-        let near =
-            (point(300.0), point(40.0)).prop_map(|(start, way)| (start, Point2::new(start.x + way.x, start.y + way.y)));
-        prop_oneof![(point(2048.0), point(2048.0)), (point(300.0), point(300.0)), near]
-            .prop_filter_map("long enough", |(start, end)| Segment2::new(start, end, Polarity::LeftBrighter).ok())
-    }
-
     proptest! {
         #[test]
-        fn panels_hold_what_rows_hold(
-            bins in (1_u16..40, 1_u16..40),
-            max_distance_px in 20.0..800.0_f32,
-            (is_signed, uses_polarity, interpolates_angle) in any::<(bool, bool, bool)>(),
-            segments in prop::collection::vec(segment(), 0..40),
-        ) {
-            let distance = if is_signed { DistanceKind::Signed } else { DistanceKind::Unsigned };
-            let max_distance_px = max_distance_px.clamp(f32::from(bins.0), 400.0 * f32::from(bins.0));
-            let shape = PghShape {
-                distance_bins: bins.0,
-                angle_bins: bins.1,
-                max_distance_px,
-                distance,
-                uses_polarity,
-                interpolates_angle,
-            };
+        fn panels_hold_what_rows_hold(shape in any_shape(), segments in any_segments(0..40)) {
             let lines: Vec<Line> = segments.iter().map(|segment| Line::new(segment, 0, &shape)).collect();
             let [of_rows, of_panels] = kernels::run(BothForms(&shape, &lines));
             prop_assert_eq!(of_rows, of_panels);

@@ -110,8 +110,8 @@ impl<'a> Frame<'a> {
             let (column, above) = self.angle(block, i);
             shares.first[i] = first.wrapping_mul(stride).wrapping_add(column);
             shares.last[i] = last.wrapping_mul(stride).wrapping_add(column);
-            shares.in_first[i] = packed(split(density * in_first as f32, above));
-            shares.in_last[i] = packed(split(density * in_last as f32, above));
+            shares.in_first[i] = split(density * in_first as f32, above);
+            shares.in_last[i] = split(density * in_last as f32, above);
             shares.in_between[i] = split(density * BIN as f32, above);
         }
         shares
@@ -146,20 +146,14 @@ fn split(mass: f32, above: f32) -> [i32; 2] {
     [whole.wrapping_sub(above), above]
 }
 
-/// Both shares, which lie side by side in memory.
-#[inline(always)]
-fn packed(pair: [i32; 2]) -> u64 {
-    zerocopy::transmute!(pair)
-}
-
 /// What the lines of a block add to a histogram: masses for two neighbouring angle bins each.
 #[derive(Debug)]
 pub(super) struct Shares {
     /// Places of the first distance bins, and of the last, which may be the same.
     pub(super) first: [i32; BLOCK],
     pub(super) last: [i32; BLOCK],
-    pub(super) in_first: [u64; BLOCK],
-    pub(super) in_last: [u64; BLOCK],
+    pub(super) in_first: [[i32; 2]; BLOCK],
+    pub(super) in_last: [[i32; 2]; BLOCK],
     /// In each bin between the two; means nothing if there is none.
     pub(super) in_between: [[i32; 2]; BLOCK],
 }
@@ -168,8 +162,8 @@ impl Shares {
     const NONE: Self = Self {
         first: [0; BLOCK],
         last: [0; BLOCK],
-        in_first: [0; BLOCK],
-        in_last: [0; BLOCK],
+        in_first: [[0; 2]; BLOCK],
+        in_last: [[0; 2]; BLOCK],
         in_between: [[0; 2]; BLOCK],
     };
 }

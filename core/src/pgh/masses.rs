@@ -40,6 +40,14 @@ pub(super) struct Filled {
     pairs: Range<usize>,
 }
 
+impl Filled {
+    /// `None` if there is no mass.
+    #[inline(always)]
+    fn of(total: u32, pairs: Range<usize>) -> Option<Self> {
+        (total > 0).then(|| Self { per_mass: 1.0 / total as f32, pairs })
+    }
+}
+
 impl<'m> Masses<'m> {
     /// The same on every machine, whatever its stride.
     const fn grid_len(shape: &PghShape) -> usize {
@@ -79,22 +87,20 @@ impl<'m> Masses<'m> {
     /// Brings together what all lines of the `blocks` have in `frame`; `None` if that is nothing.
     #[inline(always)]
     pub(super) fn gather(&mut self, frame: &Frame<'_>, blocks: &[LineBlock]) -> Option<Filled> {
-        let (total, pairs) =
-            if BLOCK == 1 { self.add_one_by_one(frame, blocks) } else { self.add_blocks(frame, blocks) };
-        (total > 0).then(|| Filled { per_mass: 1.0 / total as f32, pairs })
+        if BLOCK == 1 { self.add_one_by_one(frame, blocks) } else { self.add_blocks(frame, blocks) }
     }
 
     #[inline(always)]
-    fn add_one_by_one(&mut self, frame: &Frame<'_>, lines: &[LineBlock]) -> (u32, Range<usize>) {
+    fn add_one_by_one(&mut self, frame: &Frame<'_>, lines: &[LineBlock]) -> Option<Filled> {
         let mut total = one_by_one::add(self.bins, frame, lines, self.angle_bins);
         if self.distance == DistanceKind::Unsigned {
             total += one_by_one::add(self.bins, &frame.mirrored(), lines, self.angle_bins);
         }
-        (total, 0..self.bins.len() / 2)
+        Filled::of(total, 0..self.bins.len() / 2)
     }
 
     #[inline(always)]
-    fn add_blocks(&mut self, frame: &Frame<'_>, blocks: &[LineBlock]) -> (u32, Range<usize>) {
+    fn add_blocks(&mut self, frame: &Frame<'_>, blocks: &[LineBlock]) -> Option<Filled> {
         let mut reach = Reach::NONE;
         for block in blocks {
             self.add(frame, block, &mut reach);
@@ -112,7 +118,7 @@ impl<'m> Masses<'m> {
         if let Some(behind) = self.bins.get_mut(bins.end) {
             *behind = 0;
         }
-        (total, bins.start / 2..bins.end.div_ceil(2))
+        Filled::of(total, bins.start / 2..bins.end.div_ceil(2))
     }
 
     #[inline(always)]
@@ -121,8 +127,8 @@ impl<'m> Masses<'m> {
         let stride = stride_of(self.angle_bins, BLOCK) as i32;
         for i in 0..BLOCK {
             let (first, last) = (shares.first[i], shares.last[i]);
-            add_shares(self.ends, first, shares.in_first[i]);
-            add_shares(self.ends, last, shares.in_last[i]);
+            add_pair(self.ends, first, &shares.in_first[i]);
+            add_pair(self.ends, last, &shares.in_last[i]);
             if last - first > stride {
                 add_pair(self.steps, first + stride, &shares.in_between[i]);
                 add_pair(self.steps, last, &shares.in_between[i].map(i32::wrapping_neg));
@@ -175,7 +181,7 @@ impl<'m> Masses<'m> {
         for first in pairs.clone().step_by(32) {
             let mut filled = 0_u32;
             for (bit, [even, odd]) in bins[first..pairs.end].iter().take(32).enumerate() {
-                filled |= u32::from(even | odd != 0) << bit;
+                filled |= if even | odd != 0 { 1 << bit } else { 0 };
             }
             while filled != 0 {
                 let index = first + filled.trailing_zeros() as usize;
@@ -191,20 +197,26 @@ impl<'m> Masses<'m> {
 
     /// Takes the masses and calls `put(index, roots)` for each pair of bins that aren't both empty.
     #[inline(always)]
-    pub(super) fn take(&mut self, filled: Filled, mut put: impl FnMut(u16, [i16; 2])) {
-        let Filled { per_mass, pairs } = filled;
-        if BLOCK == 1 {
-            let mut index = 0_u16;
-            for [a, b, c, d] in self.bins.as_chunks_mut().0 {
-                for pair in [[a, b], [c, d]] {
-                    if *pair[0] | *pair[1] != 0 {
-                        put(index, pair.map(|mass| root_q15(core::mem::take(mass), per_mass) as i16));
-                    }
-                    index = index.wrapping_add(1);
+    pub(super) fn take(&mut self, filled: Filled, put: impl FnMut(u16, [i16; 2])) {
+        if BLOCK == 1 { self.take_one_by_one(filled, put) } else { self.take_gathered(filled, put) }
+    }
+
+    /// Empties the bins.
+    #[inline(always)]
+    fn take_one_by_one(&mut self, Filled { per_mass, .. }: Filled, mut put: impl FnMut(u16, [i16; 2])) {
+        let mut index = 0_u16;
+        for [a, b, c, d] in self.bins.as_chunks_mut().0 {
+            for pair in [[a, b], [c, d]] {
+                if *pair[0] | *pair[1] != 0 {
+                    put(index, pair.map(|mass| root_q15(core::mem::take(mass), per_mass) as i16));
                 }
+                index = index.wrapping_add(1);
             }
-            return;
         }
+    }
+
+    #[inline(always)]
+    fn take_gathered(&mut self, Filled { per_mass, pairs }: Filled, mut put: impl FnMut(u16, [i16; 2])) {
         let count = self.gather_pairs(pairs);
         let (indices, roots) = (&self.indices[..count], &mut self.bins[..2 * count]);
         for root in &mut *roots {
@@ -249,13 +261,54 @@ fn add_pair(grid: &mut [i32], place: i32, pair: &[i32; 2]) {
     }
 }
 
-/// The same for shares as they lie in memory.
-#[inline(always)]
-fn add_shares(grid: &mut [i32], place: i32, shares: u64) {
-    let place = place as u32 as usize;
-    if let Some(bins) = grid.get_mut(place..place + 2).and_then(<[i32]>::first_chunk_mut::<2>) {
-        // Neither half is negative or grows beyond i32: none carries into the other.
-        let both: u64 = zerocopy::transmute!(*bins);
-        *bins = zerocopy::transmute!(both.wrapping_add(shares));
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pgh::Line;
+    use crate::pgh::frame::Axes;
+    use crate::pgh::strategies::{any_segments, any_shape};
+    use proptest::prelude::*;
+    use std::vec;
+    use std::vec::Vec;
+
+    type Pairs = Vec<(u16, [i16; 2])>;
+
+    /// The histograms about all `lines` in turn as `build` builds them, of blocks of so many lines.
+    fn histograms(
+        shape: &PghShape,
+        lines: &[Line],
+        in_block: usize,
+        build: impl Fn(&mut Masses<'_>, &Frame<'_>, &[LineBlock], &mut Pairs) -> Option<()>,
+    ) -> Vec<Pairs> {
+        let axes = Axes::of(shape);
+        let mut memory = vec![-1; Masses::memory_len(shape)];
+        let mut masses = Masses::new(shape, &mut memory);
+        let mut blocks: Vec<LineBlock> = lines.chunks(in_block).map(LineBlock::of).collect();
+        let about = |(index, reference): (usize, &Line)| {
+            let mut pairs = Pairs::new();
+            let own_mass = core::mem::take(&mut blocks[index / in_block].mass[index % in_block]);
+            build(&mut masses, &Frame::about(reference, &axes), &blocks, &mut pairs);
+            blocks[index / in_block].mass[index % in_block] = own_mass;
+            pairs
+        };
+        lines.iter().enumerate().map(about).collect()
+    }
+
+    proptest! {
+        #[test]
+        fn lines_one_by_one_give_what_blocks_give(shape in any_shape(), segments in any_segments(0..40)) {
+            let lines: Vec<Line> = segments.iter().map(|segment| Line::new(segment, 0, &shape)).collect();
+            let of_blocks = histograms(&shape, &lines, BLOCK, |masses, frame, blocks, pairs| {
+                let filled = masses.add_blocks(frame, blocks)?;
+                masses.take_gathered(filled, |index, roots| pairs.push((index, roots)));
+                Some(())
+            });
+            let one_by_one = histograms(&shape, &lines, 1, |masses, frame, blocks, pairs| {
+                let filled = masses.add_one_by_one(frame, blocks)?;
+                masses.take_one_by_one(filled, |index, roots| pairs.push((index, roots)));
+                Some(())
+            });
+            prop_assert_eq!(one_by_one, of_blocks);
+        }
     }
 }

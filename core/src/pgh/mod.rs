@@ -26,6 +26,8 @@ mod masses;
 mod one_by_one;
 mod root;
 mod shape;
+#[cfg(test)]
+pub(crate) mod strategies;
 
 pub use block::LineBlock;
 pub use builder::{BuilderError, HistogramBuilder};

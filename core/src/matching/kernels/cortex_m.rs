@@ -3,13 +3,10 @@
 
 #![allow(unsafe_code, reason = "an instruction without an intrinsic, at one of the addresses where unsafe may live")]
 
+use super::filled_bins::FilledBins;
 use super::{Body, LANES};
 use crate::matching::{BinPair, PanelRow};
 use core::arch::asm;
-
-/// Of a panel of up to so many pairs of bins those that no line fills are told beforehand and left out. Where lines that are
-/// alike lie in one panel that is half of all meetings.
-const TOLD: usize = 256;
 
 /// Lines whose sums stay in registers.
 const HALF: usize = LANES / 2;
@@ -27,26 +24,9 @@ impl Body for Smlad {
     }
 
     fn raise_best<'a>(self, rows: impl Iterator<Item = &'a [BinPair]>, panel: &[PanelRow], best: &mut [i32]) {
-        let mut filled = [false; TOLD];
-        for (filled, row) in filled.iter_mut().zip(panel) {
-            let lanes: [u32; LANES] = zerocopy::transmute!(row.roots);
-            *filled = lanes.into_iter().fold(0, |any, lane| any | lane) != 0;
-        }
-        let mut meeting = [BinPair { index: 0, roots: [0; 2] }; TOLD];
+        let mut filled = FilledBins::of(panel);
         for (row, best) in rows.zip(best) {
-            let mut meets = row;
-            if panel.len() <= TOLD && row.len() < TOLD {
-                let mut count = 0_usize;
-                for pair in row {
-                    // An index past the panel is looked up in place of another, and counts for nothing later.
-                    if filled[usize::from(pair.index) % TOLD] {
-                        meeting[count % TOLD] = *pair;
-                        count = count.wrapping_add(1);
-                    }
-                }
-                meets = &meeting[..count % TOLD];
-            }
-            *best = (*best).max(self.best_coefficient(meets, panel));
+            *best = (*best).max(self.best_coefficient(filled.meeting(row), panel));
         }
     }
 }

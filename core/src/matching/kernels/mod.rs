@@ -6,6 +6,8 @@
 #[cfg(edgeloc_body = "smlad")]
 mod cortex_m;
 mod distance_steps;
+#[cfg(any(test, edgeloc_body = "smlad"))]
+mod filled_bins;
 #[cfg(edgeloc_body = "neon")]
 mod neon;
 #[cfg(any(test, edgeloc_body = "portable"))]
@@ -117,10 +119,10 @@ pub fn body_name() -> &'static str {
 #[cfg(all(test, edgeloc_body = "x86_64"))]
 mod tests {
     use super::*;
-    use crate::geometry::{Point2, Polarity, Segment2};
     use crate::matching::RootRows;
     use crate::matching::bhattacharyya::Rebuild;
-    use crate::pgh::{DistanceKind, HistogramBuilder, Line, LineBlock, PghShape};
+    use crate::pgh::strategies::{any_segments, any_shape};
+    use crate::pgh::{HistogramBuilder, Line, LineBlock, PghShape};
     use proptest::prelude::*;
     use std::vec;
     use std::vec::Vec;
@@ -180,13 +182,6 @@ mod tests {
         (root(), root()).prop_map(|(even, odd)| [even, odd])
     }
 
-    fn segment() -> impl Strategy<Value = Segment2> {
-        let point = || (-2048.0..2048.0_f32, 0.0..480.0_f32).prop_map(|(x, y)| Point2::new(x, y));
-        let near = || (300.0..340.0_f32, 0.0..480.0_f32).prop_map(|(x, y)| Point2::new(x, y));
-        prop_oneof![(point(), point()), (near(), near())]
-            .prop_filter_map("long enough", |(start, end)| Segment2::new(start, end, Polarity::LeftBrighter).ok())
-    }
-
     proptest! {
         // Rows below, at and above the pairs that are under way at a time; indices past the panel count for nothing.
         #[test]
@@ -204,21 +199,7 @@ mod tests {
         }
 
         #[test]
-        fn all_bodies_give_the_same_histograms(
-            bins in (2_u16..40, 1_u16..40),
-            max_distance_px in 50.0..800.0_f32,
-            (is_signed, uses_polarity, interpolates_angle) in any::<(bool, bool, bool)>(),
-            segments in prop::collection::vec(segment(), 0..40),
-        ) {
-            let distance = if is_signed { DistanceKind::Signed } else { DistanceKind::Unsigned };
-            let shape = PghShape {
-                distance_bins: bins.0,
-                angle_bins: bins.1,
-                max_distance_px: max_distance_px.max(f32::from(bins.0)),
-                distance,
-                uses_polarity,
-                interpolates_angle,
-            };
+        fn all_bodies_give_the_same_histograms(shape in any_shape(), segments in any_segments(0..40)) {
             let lines: Vec<Line> = segments.iter().map(|segment| Line::new(segment, 0, &shape)).collect();
             let expected = Rows(&shape, &lines).run(portable::Portable);
             for (name, found) in x86_64::run_all(|| Rows(&shape, &lines)) {
