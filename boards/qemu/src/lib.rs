@@ -67,7 +67,8 @@ pub fn run(map: &[u8], mut timer: Timer) -> ! {
     let memory = singleton!(: [u64; MEMORY_WORDS] = [0; MEMORY_WORDS]).expect("the entry point runs once");
     let larger_map = singleton!(: [u8; MAP_BYTES] = [0; MAP_BYTES]).expect("the entry point runs once");
     let verdict = accept(map, memory, &mut Console).unwrap_or(Verdict::CantReplay);
-    let counted = count_instructions([map, golden::JOINED_MAP], golden::LOOKS, memory, larger_map, &mut timer, &mut Console);
+    let counted =
+        count_instructions([map, golden::JOINED_MAP], golden::LOOKS, memory, larger_map, &mut timer, &mut Console);
     match counted {
         Ok(()) => process::exit(verdict.exit_code().into()),
         Err(fmt::Error) => {

@@ -11,8 +11,8 @@
 //!
 //! 1. Image coordinates are rounded to 1/16 px (Q4), normals to Q30, directions to [`BinaryAngle`]s.
 //! 2. A segment's mass is spread evenly over the span of its perpendicular distances: its first and its last bin by
-//!    themselves, those between through a difference array that is summed once; being integers, what is added and taken
-//!    away cancels exactly.
+//!    themselves, those between one by one, or where there are vectors through a difference array that is summed once;
+//!    being integers, what is added and taken away cancels exactly.
 //! 3. Square roots come from two steps of Newton's iteration, within two thirds of a unit of the last place of Q15.
 //!
 //! [`BinaryAngle`]: crate::geometry::BinaryAngle

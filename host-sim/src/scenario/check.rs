@@ -238,7 +238,6 @@ mod tests {
         assert_eq!(refused(|s| s.rows[1].name = s.rows[0].name.clone()), "rows.1.name");
     }
 
-    #[cfg(unix)]
     #[test]
     fn a_robot_without_what_its_localiser_needs_is_refused() {
         let sensors = |kind, has_compass, has_odometry| {
@@ -255,6 +254,7 @@ mod tests {
         assert_eq!(sensors(LocalizerKind::Edgeloc, true, false), Ok(()));
     }
 
+    #[cfg(unix)]
     #[test]
     fn a_world_path_that_no_text_can_hold_is_refused() {
         use std::os::unix::ffi::OsStrExt;

@@ -142,7 +142,7 @@ impl<'m> Checker<'m> {
     pub(super) fn turn(&mut self, node: &Node<'_>, heading_rad: f32, (offset_m, reach_m): ([f32; 2], f32)) {
         self.sin_cos = math::sin_cos(heading_rad);
         let center = self.in_camera(offset_m);
-        self.view_count = turn_model(node, self.sin_cos, self.frustum.sides, (center, reach_m), self.storage);
+        self.view_count = turn_model(node, self.sin_cos, self.frustum.sides(), (center, reach_m), self.storage);
         for segment in &mut self.storage[..self.view_count] {
             segment.measure(center, self.frame.focal_px);
         }
@@ -290,7 +290,7 @@ impl<'m> Checker<'m> {
 
     /// Image of a model segment for a camera at `offset_m` (right, forward), cut at the near limit and the border.
     pub(super) fn project(&self, segment: &ViewSegment, offset_m: [f32; 2]) -> Option<Projected> {
-        let (frame, near_m, [left, right]) = (&self.frame, self.frustum.near_m(), self.frustum.sides);
+        let (frame, near_m, [left, right]) = (&self.frame, self.frustum.near_m(), self.frustum.sides());
         let moved = |p: [f32; 3]| [p[0] - offset_m[0], p[1], p[2] - offset_m[1]];
         let (mut start, mut end) = (moved(segment.start), moved(segment.end));
         if start[2] < near_m {

@@ -7,9 +7,10 @@ use super::kept_looks::LEAST_MOVE_M;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VerificationConfig {
     /// Positions tried along either side of the square about each node, odd, 3 to 31. How far apart they lie follows
-    /// from the spacing of the nodes, so that the squares reach the neighbours.
+    /// from the spacing of the nodes.
     pub cells_per_side: u16,
-    /// How far that square reaches to either side, in distances from a node to the next, 0.1 to 2; at most 2 m.
+    /// How far that square reaches to either side, in distances from a node to the next, 0.1 to 2, but 0.6 m at
+    /// least and 2 m at most. From 0.8 on the squares reach the neighbours.
     pub reach: f32,
     /// Headings that may be tried in every cell of the grid, 1 to 9: one does for a compass that errs up to 2.5 degrees,
     /// three beyond; a robot without a compass needs four, along and across the building.

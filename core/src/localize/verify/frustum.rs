@@ -7,7 +7,7 @@ use super::image_frame::ImageFrame;
 pub(super) struct Frustum {
     near_m: f32,
     /// Slopes of the left and the right border.
-    pub(super) sides: [f32; 2],
+    sides: [f32; 2],
     /// Slopes of the upper and the lower border.
     heights: [f32; 2],
 }
@@ -31,9 +31,15 @@ impl Frustum {
         self.near_m
     }
 
+    /// Slopes of the left and the right border.
+    pub(super) const fn sides(&self) -> [f32; 2] {
+        self.sides
+    }
+
     /// How far on the inner side of a plane a point lies, in that plane's own unit; less than 0 outside.
     #[inline(always)]
     pub(super) fn inside<const PLANE: usize>(&self, [x, y, z]: [f32; 3]) -> f32 {
+        const { assert!(PLANE < Self::PLANES) }
         match PLANE {
             0 => x + self.sides[0] * z,
             1 => self.sides[1] * z - x,

@@ -161,6 +161,11 @@ impl<'m> KeptLooks<'m> {
         }
     }
 
+    /// Takes no heading for off beside that of the first look.
+    pub(super) fn forget_drift(&mut self) {
+        self.poses.iter_mut().for_each(|pose| pose.drift_rad = 0.0);
+    }
+
     /// Length of the segments of a look in Q4 px.
     pub(super) fn seen_q4_in(&self, look: usize) -> i32 {
         self.pose(look).seen_q4

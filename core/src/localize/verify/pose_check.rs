@@ -84,3 +84,52 @@ impl<'m> PoseCheck<'m> {
         self.checker.evidence(offset_m, &Closeness { position_m, heading_rad, spacing_px })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::database::{self, NodeId, NodeModel, TopologicalDatabase};
+    use crate::geometry::{Point2, Point3, Polarity, Segment3};
+    use proptest::prelude::*;
+    use std::vec;
+    use std::vec::Vec;
+
+    fn model_segment() -> impl Strategy<Value = Segment3> {
+        let point = || (-6.0..6.0_f32, -6.0..6.0_f32, -1.2..1.5_f32).prop_map(|(x, y, z)| Point3::new(x, y, z));
+        (point(), point()).prop_map(|(start, end)| Segment3 { start, end, polarity: Polarity::LeftBrighter })
+    }
+
+    fn seen_segment() -> impl Strategy<Value = Segment2> {
+        let point = || (0.0..640.0_f32, 0.0..480.0_f32).prop_map(|(x, y)| Point2::new(x, y));
+        (point(), point()).prop_filter_map("long enough", |(a, b)| Segment2::new(a, b, Polarity::LeftBrighter).ok())
+    }
+
+    proptest! {
+        // Fewer cameras than lanes, as many, more than a batch; near, far, and beyond what the turned model holds.
+        #[test]
+        fn cameras_together_see_what_each_sees_alone(
+            model in prop::collection::vec(model_segment(), 1..60),
+            scene in prop::collection::vec(seen_segment(), 1..30),
+            offsets_m in prop::collection::vec([-3.0..3.0_f32, -3.0..3.0_f32], 1..40),
+            heading_rad in -3.0..3.0_f32,
+            position_m in 0.0..0.3_f32,
+        ) {
+            let rig = StereoRig::reference();
+            let nodes = [NodeModel { position: Point2::new(0.0, 0.0), segments: &model }];
+            let mut bytes = vec![0; database::encoded_len(&nodes).expect("one node fits")];
+            database::write(&rig, 12, &nodes, &mut bytes).expect("one node fits");
+            let database = TopologicalDatabase::open(&bytes).expect("just written");
+            let node = database.node(NodeId(0)).expect("one node");
+            let mut memory = vec![0; PoseCheck::memory_len()];
+            let mut check =
+                PoseCheck::new(&rig, &LocalizerConfig::edgeloc(), &scene, &mut memory).expect("enough memory");
+            check.checker.turn(&node, heading_rad, ([0.0; 2], 2.0));
+            let closeness = Closeness { position_m, heading_rad: 0.01, spacing_px: 14.0 };
+            let mut together = vec![Evidence::default(); offsets_m.len()];
+            check.checker.evidence_of_all(&offsets_m, &closeness, &mut together);
+            let alone: Vec<Evidence> =
+                offsets_m.iter().map(|offset_m| check.checker.evidence(*offset_m, &closeness)).collect();
+            prop_assert_eq!(together, alone);
+        }
+    }
+}

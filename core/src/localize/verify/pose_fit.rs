@@ -4,6 +4,9 @@
 //! (its points share the lateral shift of the edge). Five rounds of Gauss and Newton with weights after Cauchy. What the
 //! heading of each look is off beside the first one's, for odometry drifts, is fitted along with the pose and eliminated
 //! look by look (Schur's complement).
+//!
+//! Simpler than it is: drifts are taken for independent, though odometry's add up, and the way made is not corrected by
+//! them; what a look's way may be off is stated in full.
 
 use super::check::{Checker, Projected};
 use super::hypothesis::Hypothesis;
@@ -22,6 +25,8 @@ const GATES_PX: [f32; 5] = [24.0, 16.0, 12.0, 9.0, 9.0];
 const MAX_SINE: f32 = 0.12;
 /// A pose that moves farther than this was no fit \[m\].
 const MAX_MOVE_M: f32 = 0.15;
+/// What a pose that could not be fitted may be off in heading \[rad\]: 2 degrees.
+const UNFITTED_RAD: f32 = 0.035;
 
 /// A pose at the first look and its covariance: x, y \[m\] and heading \[rad\].
 #[derive(Debug, Clone, Copy)]
@@ -34,6 +39,16 @@ pub(super) struct FittedPose {
 }
 
 impl FittedPose {
+    /// The hypothesis as it is.
+    fn unfitted(hypothesis: &Hypothesis) -> Self {
+        let mut covariance = [[0.0; 3]; 3];
+        for (axis, spread) in [MAX_MOVE_M, MAX_MOVE_M, UNFITTED_RAD].into_iter().enumerate() {
+            covariance[axis][axis] = spread * spread;
+        }
+        let Hypothesis { offset_m, heading_error_rad, .. } = *hypothesis;
+        Self { offset_m, heading_error_rad, covariance, last: Drift::default() }
+    }
+
     /// The covariance of the pose at the last look: that at the first, carried along the way, and what odometry adds.
     pub(super) fn covariance_at(&self, last: &LookPose) -> [[f32; 3]; 3] {
         let [x, y] = last.way_m_if(self.heading_error_rad);
@@ -61,12 +76,8 @@ pub(super) fn fit(
     checker: &mut Checker<'_>,
     looks: &mut KeptLooks<'_>,
 ) -> FittedPose {
-    let mut pose = FittedPose {
-        offset_m: hypothesis.offset_m,
-        heading_error_rad: hypothesis.heading_error_rad,
-        covariance: [[0.0; 3]; 3],
-        last: Drift::default(),
-    };
+    let unfitted = FittedPose::unfitted(hypothesis);
+    let mut pose = unfitted;
     for gate_px in GATES_PX {
         let mut normal = Normal::prior(looks.compass_spread_rad(), pose.heading_error_rad);
         for look in 0..looks.count() {
@@ -80,18 +91,20 @@ pub(super) fn fit(
             looks.drift(look, drifted_rad);
             pose.last = drift;
         }
-        let Some((step, covariance)) = normal.solve() else { return pose };
+        let Some((step, covariance)) = normal.solve() else {
+            looks.forget_drift();
+            return unfitted;
+        };
+        // The drift was best for the pose before the step; the next round sees to the other looks.
+        looks.drift(looks.count().saturating_sub(1), -pose.last.variance * dot(pose.last.slope, step));
         pose.offset_m = [pose.offset_m[0] + step[0], pose.offset_m[1] + step[1]];
         pose.heading_error_rad += step[2];
         pose.covariance = covariance;
     }
     let moved = math::length(pose.offset_m[0] - hypothesis.offset_m[0], pose.offset_m[1] - hypothesis.offset_m[1]);
     if moved > MAX_MOVE_M {
-        pose.offset_m = hypothesis.offset_m;
-        pose.heading_error_rad = hypothesis.heading_error_rad;
-        for look in 0..looks.count() {
-            looks.drift(look, -looks.pose(look).drift_rad);
-        }
+        looks.forget_drift();
+        return unfitted;
     }
     pose
 }
@@ -285,4 +298,81 @@ fn nearest(point: [f32; 2], direction: [f32; 2], seen: &[SeenSegment], gate_px: 
         }
     }
     best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What makes all equations of `x` hold, by Gauss's elimination.
+    fn solved<const N: usize>(mut matrix: [[f64; N]; N], mut right: [f64; N]) -> [f64; N] {
+        for pivot in 0..N {
+            for row in pivot + 1..N {
+                let factor = matrix[row][pivot] / matrix[pivot][pivot];
+                for column in pivot..N {
+                    matrix[row][column] -= factor * matrix[pivot][column];
+                }
+                right[row] -= factor * right[pivot];
+            }
+        }
+        for pivot in (0..N).rev() {
+            for column in pivot + 1..N {
+                right[pivot] -= matrix[pivot][column] * right[column];
+            }
+            right[pivot] /= matrix[pivot][pivot];
+        }
+        right
+    }
+
+    #[test]
+    fn drifts_eliminated_look_by_look_are_those_of_all_equations_at_once() {
+        const SPREADS: [f32; 2] = [0.01, 0.05];
+        // A step of x, y and heading, then a drift for each of two looks.
+        let (mut matrix, mut right) = ([[0.0_f64; 5]; 5], [0.0_f64; 5]);
+        let mut normal = Normal::prior(Some(0.04), 0.01);
+        (matrix[0][0], matrix[1][1], matrix[2][2]) = (4.0, 4.0, f64::from(weight_of(0.04)));
+        right[2] = -0.01 * f64::from(weight_of(0.04));
+        let mut last = Drift::default();
+        let mut drift_rad = 0.0;
+        for (look, spread_rad) in SPREADS.into_iter().enumerate() {
+            let mut drift = Drift::prior(&LookPose { heading_spread_rad: spread_rad, ..LookPose::default() });
+            matrix[3 + look][3 + look] = f64::from(weight_of(spread_rad));
+            for index in 0..6_u8 {
+                let (phase, by_heading) = (f32::from(index) + 2.0 * look as f32, 300.0 + 40.0 * f32::from(index));
+                let (across, along) = math::sin_cos(phase);
+                // The look's way turns with the heading at the first: its slope differs from that of its own drift.
+                let slope = [90.0 * across, 60.0 * along, by_heading + 50.0 * along];
+                let measurement = Measurement { slope, distance_px: 2.0 * across + 1.0, weight: 0.2 + 0.1 * along };
+                normal.add(&measurement);
+                drift.add(&measurement, by_heading);
+                let mut whole = [slope[0], slope[1], slope[2], 0.0, 0.0].map(f64::from);
+                whole[3 + look] = f64::from(by_heading);
+                let (weight, distance) = (f64::from(measurement.weight), f64::from(measurement.distance_px));
+                for row in 0..5 {
+                    for column in 0..5 {
+                        matrix[row][column] += weight * whole[row] * whole[column];
+                    }
+                    right[row] -= weight * whole[row] * distance;
+                }
+            }
+            drift_rad = normal.eliminate(&mut drift);
+            last = drift;
+        }
+        let expected = solved(matrix, right);
+        let (step, covariance) = normal.solve().expect("enough was measured");
+        drift_rad -= last.variance * dot(last.slope, step);
+        for (found, expected) in
+            step.into_iter().chain([drift_rad]).zip([0, 1, 2, 4].map(|index: usize| expected[index]))
+        {
+            assert!((f64::from(found) - expected).abs() < 2e-3 * expected.abs() + 1e-6, "{found} for {expected}");
+        }
+        // The covariance of the heading at the last look, carried there, is that of the step and the drift together.
+        let fitted = FittedPose { offset_m: [0.0; 2], heading_error_rad: 0.0, covariance, last };
+        let at = fitted.covariance_at(&LookPose::default());
+        let mut unit = [0.0; 5];
+        (unit[2], unit[4]) = (1.0, 1.0);
+        let column = solved(matrix, unit);
+        let expected = column[2] + column[4];
+        assert!((f64::from(at[2][2]) - expected).abs() < 0.01 * expected, "{} for {expected}", at[2][2]);
+    }
 }

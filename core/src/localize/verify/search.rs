@@ -68,15 +68,16 @@ pub(super) struct Search<'m> {
 }
 
 impl<'m> Search<'m> {
+    /// A search in a map whose nodes lie `spacing_m` apart.
     pub(super) fn new(
         config: &VerificationConfig,
-        database: &TopologicalDatabase<'_>,
+        spacing_m: f32,
         slots: Slots<'m>,
         (cells, ranked, refined, children): SearchMemory<'m>,
     ) -> Self {
         let mut search = Self {
             config: *config,
-            cell_m: reach_m(database, config.reach) / f32::from(config.cells_per_side / 2),
+            cell_m: reach_m(spacing_m, config.reach) / f32::from(config.cells_per_side / 2),
             headings: Headings::about_compass(0.0, 1),
             dominant_rad: None,
             slots,
@@ -106,11 +107,6 @@ impl<'m> Search<'m> {
     /// The best hypotheses of the grid about each node, the best first.
     pub(super) fn ranked(&self) -> &[Hypothesis] {
         &self.ranked[..self.ranked_count]
-    }
-
-    /// How far the grid about every node reaches along an axis \[m\].
-    pub(super) fn reach_m(&self) -> f32 {
-        self.cell_m * f32::from(self.config.cells_per_side / 2)
     }
 
     /// The nodes that have a grid, where a first stage chooses them.

@@ -1,4 +1,4 @@
-//! How far the grid about a node reaches.
+//! How far nodes lie apart, and how far the grid about a node reaches.
 
 use crate::database::{Node, TopologicalDatabase};
 use crate::math;
@@ -17,12 +17,16 @@ fn nearest_other_m(database: &TopologicalDatabase<'_>, node: &Node<'_>) -> f32 {
     others.map(|other| other.position().distance(node.position())).fold(f32::INFINITY, math::min)
 }
 
-/// How far the grid about every node reaches along an axis \[m\]: `share` of the mean spacing of the nodes. With 0.8 it
-/// reaches past the corners of their Voronoi cells.
-pub(super) fn reach_m(database: &TopologicalDatabase<'_>, share: f32) -> f32 {
+/// Mean distance from a node to the nearest other \[m\]; infinite when there is none.
+pub(super) fn mean_spacing_m(database: &TopologicalDatabase<'_>) -> f32 {
     let count = database.node_count();
     let step = if count > MOST_NODES { count.div_ceil(ASKED_NODES) } else { 1 };
     let sum = database.nodes().step_by(step).fold(0.0, |sum, node| sum + nearest_other_m(database, &node));
-    let wanted = share * sum / count.div_ceil(step) as f32;
-    math::max(REACH_LIMITS_M[0], math::min(wanted, REACH_LIMITS_M[1]))
+    sum / count.div_ceil(step) as f32
+}
+
+/// How far the grid about every node reaches along an axis \[m\]: `share` of the nodes' spacing. With 0.8 it reaches past
+/// the corners of their Voronoi cells.
+pub(super) fn reach_m(spacing_m: f32, share: f32) -> f32 {
+    math::max(REACH_LIMITS_M[0], math::min(share * spacing_m, REACH_LIMITS_M[1]))
 }

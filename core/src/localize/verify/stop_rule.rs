@@ -12,7 +12,7 @@ use crate::math;
 /// Confidence that the first look alone asks for, in confidences asked for.
 const FIRST_CONFIDENCE: f32 = 1.25;
 /// Segments a node beyond which a map is crowded: by chance places resemble each other more, and the first look alone has
-/// to say more, in proportion up to [`MOST_CROWDED`].
+/// to say more, in proportion up to [`MOST_CROWDED`]. Set between offices (360 a node, joined) and a furnished flat (700).
 const CROWDED: f32 = 540.0;
 /// The most that a crowded map asks of the first look, in what others ask.
 const MOST_CROWDED: f32 = 1.5;
@@ -36,8 +36,8 @@ const TELLING_SEGMENTS: usize = 75;
 const CONTRADICTION: f32 = 0.25;
 /// A lead this clear no look contradicts: the map may have changed; in confidences asked for.
 const BEYOND_DOUBT: f32 = 2.5;
-/// Farther than this from every node a place is at the edge, as a share of how far the nodes' grids reach.
-const EDGE: f32 = 0.85;
+/// Farther than this from every node a place is at the edge, as a share of the nodes' spacing.
+const EDGE: f32 = 0.68;
 /// Lead asked for at the edge, in leads asked for elsewhere.
 const EDGE_LEAD: f32 = 2.0;
 /// A telling look contradicts a place at the edge that it agrees less with than this, whatever the lead.
@@ -72,8 +72,8 @@ pub(super) struct StopRule {
 pub(super) struct MapTraits {
     /// Its agreement with itself, as far as it was measured.
     pub(super) self_agreement: Option<f32>,
-    /// How far the grids of its nodes reach \[m\].
-    pub(super) reach_m: f32,
+    /// How far its nodes lie apart in the mean \[m\].
+    pub(super) spacing_m: f32,
     /// Segments of a node's model in the mean.
     pub(super) segments_per_node: f32,
 }
@@ -86,7 +86,7 @@ impl StopRule {
             confidence,
             first_confidence: FIRST_CONFIDENCE * crowded,
             self_agreement: map.self_agreement.unwrap_or(USUAL_AGREEMENT),
-            edge_m: EDGE * map.reach_m,
+            edge_m: EDGE * map.spacing_m,
         }
     }
 
@@ -144,7 +144,7 @@ mod tests {
     use crate::database::NodeId;
     use crate::localize::Rivals;
 
-    const MAP: MapTraits = MapTraits { self_agreement: Some(0.5), reach_m: 1.2, segments_per_node: 360.0 };
+    const MAP: MapTraits = MapTraits { self_agreement: Some(0.5), spacing_m: 1.5, segments_per_node: 360.0 };
 
     fn judgement(confidence: f32, agreement: f32) -> Judgement {
         let score_q20 = (agreement * 0.5 * (1 << 20) as f32) as i32;

@@ -11,6 +11,7 @@ use super::pose_fit::fit;
 use super::search::{Search, agreement_of_look};
 use super::shortlist::Shortlist;
 use super::slots::Slots;
+use super::spacing::mean_spacing_m;
 use super::stop_rule::{Looked, MapTraits, StopRule};
 use super::{NextLook, VerificationConfig};
 use crate::database::TopologicalDatabase;
@@ -60,10 +61,11 @@ impl<'m> VerifyingLocalizer<'m> {
             Shortlist::new(stage, memory.codes, memory.chosen)
         });
         let search_memory = (memory.cells, memory.ranked, memory.refined, memory.children);
-        let search = Search::new(verification, &database, Slots::new(memory.slots), search_memory);
+        let spacing_m = mean_spacing_m(&database);
+        let search = Search::new(verification, spacing_m, Slots::new(memory.slots), search_memory);
         let map_traits = MapTraits {
             self_agreement: database.self_agreement(),
-            reach_m: search.reach_m(),
+            spacing_m,
             segments_per_node: database.segment_count() as f32 / database.node_count().max(1) as f32,
         };
         Ok(Self {
