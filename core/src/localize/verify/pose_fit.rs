@@ -309,9 +309,8 @@ mod tests {
         for pivot in 0..N {
             for row in pivot + 1..N {
                 let factor = matrix[row][pivot] / matrix[pivot][pivot];
-                for column in pivot..N {
-                    matrix[row][column] -= factor * matrix[pivot][column];
-                }
+                let above = matrix[pivot];
+                matrix[row].iter_mut().zip(above).for_each(|(cell, above)| *cell -= factor * above);
                 right[row] -= factor * right[pivot];
             }
         }
