@@ -13,7 +13,8 @@ use std::path::PathBuf;
 
 /// Put the robot down once and explain, look by look, how it finds out where it is; one drawing a look.
 #[derive(Debug, Args)]
-#[command(after_help = format!("Examples:\n  edgeloc locate\n  edgeloc locate --row 'anywhere, no polarity' --trial 3\n  \
+#[command(after_help = format!("Examples:\n  edgeloc locate\n  edgeloc locate --row near --trial 3\n  \
+                        edgeloc locate paper --row 'anywhere, no polarity' --trial 3\n  \
                         edgeloc locate --world small_house.edgeworld --at 5,-2 --heading-deg 90\n\n\
                         JSON (--format json): {JSON_FIELDS}."))]
 pub(super) struct Locate {

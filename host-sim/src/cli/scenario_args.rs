@@ -10,8 +10,8 @@ use std::path::PathBuf;
 /// Which scenario, and what to change in it.
 #[derive(Debug, Clone, Args)]
 pub(super) struct ScenarioArguments {
-    /// Scenario file (.toml), or a bundled scenario: paper, edgeloc, demo, stress, ablation, smoke, figures, paper-scale.
-    #[arg(default_value = "paper")]
+    /// Scenario file (.toml), or a bundled scenario: edgeloc, paper, demo, stress, ablation, smoke, figures, paper-scale.
+    #[arg(default_value = "edgeloc")]
     scenario: String,
     #[command(flatten)]
     changes: ScenarioChanges,

@@ -301,8 +301,12 @@ fn total_table(rows: &[ValidationRow]) -> Table {
         let rate = |share: &Share| share.rate.map_or_else(String::new, percent);
         let worst = total.worst_world.as_deref().zip(total.worst_success_rate);
         let (low, high) = (100.0 * total.clustered_low, 100.0 * total.clustered_high);
-        // Of one world nothing can be said of others.
-        let interval = if worlds.len() > 1 { format!(" [{low:.2}, {high:.2}]") } else { String::new() };
+        // Of one world nothing can be said of others: the interval is Wilson's of its trials.
+        let (low, high) = match &worlds[..] {
+            [only] => (100.0 * only.success.low, 100.0 * only.success.high),
+            _ => (low, high),
+        };
+        let interval = format!(" [{low:.2}, {high:.2}]");
         table.add_row([
             row.clone(),
             total.mean_success_rate.map_or_else(String::new, |mean| percent(mean) + &interval),

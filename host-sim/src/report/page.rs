@@ -238,9 +238,13 @@ fn plans(results: &RunResults, plans: &[FloorPlan]) -> Markup {
 }
 
 fn looks(results: &RunResults) -> Markup {
+    // A robot that moved looks around anew: more looks than one full turn has.
     let most = |row: &Row| {
         let setting = results.scenario.setting(Some(&row.name)).and_then(Result::ok);
-        setting.map_or(results.scenario.localizer.max_looks, |setting| setting.scenario.localizer.max_looks)
+        let around =
+            setting.map_or(results.scenario.localizer.max_looks, |setting| setting.scenario.localizer.max_looks);
+        let taken = results.records.iter().filter(|record| record.row == row.name).map(|record| record.looks).max();
+        u32::from(around).max(taken.unwrap_or(0)).min(u32::from(u16::MAX)) as u16
     };
     html! { section {
         h2 { "Looks" }

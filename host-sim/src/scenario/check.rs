@@ -90,7 +90,7 @@ impl Scenario {
             key: "rig".to_owned(),
             value: format!("{:?}", self.rig),
             legal: reason,
-            remedy: "the bundled scenario paper states each range: `edgeloc run --print-config`".to_owned(),
+            remedy: "the bundled scenario paper states each range: `edgeloc run paper --print-config`".to_owned(),
         })
     }
 

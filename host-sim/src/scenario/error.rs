@@ -19,7 +19,7 @@ pub enum ScenarioError {
     },
     /// The file can't be read.
     #[error("scenario file {} can't be read: {source}", path.display())]
-    #[diagnostic(help("a scenario is a UTF-8 text file of at most 1 MB; see `edgeloc run --print-config`"))]
+    #[diagnostic(help("a scenario is a UTF-8 text file of at most 1 MB; see `edgeloc run paper --print-config`"))]
     Unreadable {
         /// The file.
         path: PathBuf,
@@ -28,7 +28,7 @@ pub enum ScenarioError {
     },
     /// The text is not a scenario: broken TOML, an unknown key or a value of the wrong kind.
     #[error("scenario {origin} can't be understood: {reason}")]
-    #[diagnostic(help("all keys with their ranges: `edgeloc run --print-config`"))]
+    #[diagnostic(help("all keys with their ranges: `edgeloc run paper --print-config`"))]
     Text {
         /// The file or bundled scenario.
         origin: String,
@@ -45,7 +45,7 @@ pub enum ScenarioError {
     #[error("setting {setting:?} can't be applied: {reason}")]
     #[diagnostic(help(
         "write --set KEY=VALUE with a dotted key, such as --set localizer.turn_deg=60 or --set rows.0.polarity=false; \
-         all keys: `edgeloc run --print-config`"
+         all keys: `edgeloc run paper --print-config`"
     ))]
     Setting {
         /// The setting as given.

@@ -186,7 +186,7 @@ impl Scenario {
             return Err(refused("each key once".to_owned(), "the row sets it twice, dotted and nested; remove one"));
         }
         let mut root = Value::try_from(self).map_err(|error| refused(error.to_string(), ""))?;
-        let all_keys = "all keys with their ranges: `edgeloc run --print-config`";
+        let all_keys = "all keys with their ranges: `edgeloc run paper --print-config`";
         let unknown = |reason: String| refused(format!("a known key and a value of its kind ({reason})"), all_keys);
         insert(&mut root, key, value.clone()).map_err(unknown)?;
         root.try_into().map_err(|error: toml::de::Error| unknown(error.message().to_owned()))
