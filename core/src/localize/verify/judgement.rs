@@ -36,19 +36,21 @@ pub(super) fn judge(
     let behind = |hypothesis: &Hypothesis| (best.score_q20 - hypothesis.score_q20) as f32 * scale;
     let mut places = Rivals::default();
     let mut confidence = f32::INFINITY;
-    let here = best.world_position_at(&last, database);
-    let from_node_m = nearest_node(database, here).map_or(0.0, |node| node.position().distance(here));
+    let mut from_node_m = 0.0;
     for next in hypotheses {
         let here = next.world_position_at(&last, database);
         if places.iter().any(|place: &Rival| place.position.distance(here) <= PLACE_RADIUS_M) {
             continue;
         }
-        if places.iter().count() == 1 {
-            confidence = behind(next);
+        let nearest = nearest_node(database, here);
+        match places.iter().count() {
+            0 => from_node_m = nearest.map_or(0.0, |node| node.position().distance(here)),
+            1 => confidence = behind(next),
+            _ => {}
         }
         let odds = math::exp(-LOG_ODDS_PER_CONFIDENCE * behind(next));
         if !places.push(Rival {
-            node: nearest_node(database, here).map(|node| node.id()).unwrap_or_default(),
+            node: nearest.map(|node| node.id()).unwrap_or_default(),
             position: here,
             probability: odds,
         }) {
