@@ -10,9 +10,9 @@ use core::ops::Range;
 /// Columns behind the last angle bin, for what belongs to the first ones after the wrap.
 const WRAPPED: usize = 2;
 
-/// Columns of the grids: whole vectors where there are any, no gap where there are none.
+/// Columns of the grids, whole vectors.
 pub(super) const fn stride_of(angle_bins: usize, block: usize) -> usize {
-    if block == 1 { angle_bins } else { (angle_bins + WRAPPED).next_multiple_of(block) }
+    (angle_bins + WRAPPED).next_multiple_of(block)
 }
 
 /// Masses in units of 1/256 px of length.
