@@ -2,26 +2,25 @@
 //! time.
 
 /// Lowers each of `distances` to that in `from` and a `step` more, 255 at most, where this is less.
-#[cfg(not(edgeloc_body = "smlad"))]
 #[inline(always)]
 pub(crate) fn lower_by_step(distances: &mut [u8], from: &[u8], step: u8) {
+    #[cfg(edgeloc_body = "smlad")]
+    let (distances, from) = lower_quads(distances, from, step);
     for (distance, from) in distances.iter_mut().zip(from) {
         *distance = (*distance).min(from.saturating_add(step));
     }
 }
 
-/// Lowers each of `distances` to that in `from` and a `step` more, 255 at most, where this is less.
+/// Lowers as many as fill fours, and returns the rest.
 #[cfg(edgeloc_body = "smlad")]
 #[inline(always)]
-pub(crate) fn lower_by_step(distances: &mut [u8], from: &[u8], step: u8) {
+fn lower_quads<'d, 'f>(distances: &'d mut [u8], from: &'f [u8], step: u8) -> (&'d mut [u8], &'f [u8]) {
     let (quads, rest) = distances.as_chunks_mut();
     let (from_quads, from_rest) = from.as_chunks();
     for (quad, from) in quads.iter_mut().zip(from_quads) {
         *quad = lower_quad(*quad, *from, [step; 4]);
     }
-    for (distance, from) in rest.iter_mut().zip(from_rest) {
-        *distance = (*distance).min(from.saturating_add(step));
-    }
+    (rest, from_rest)
 }
 
 #[cfg(edgeloc_body = "smlad")]
