@@ -2,6 +2,7 @@
 
 use crate::database::Node;
 use crate::geometry::Point3;
+use crate::matching::{Body, Work, run};
 use crate::math;
 use zerocopy::{FromBytes, Immutable, IntoBytes};
 
@@ -30,23 +31,43 @@ impl ViewSegment {
 /// border; as many as there is room for. Returns their number.
 pub(super) fn turn_model(
     node: &Node<'_>,
-    (sin, cos): (f32, f32),
-    [left, right]: [f32; 2],
+    sin_cos: (f32, f32),
+    sides: [f32; 2],
     (center_m, reach_m): ([f32; 2], f32),
     storage: &mut [ViewSegment],
 ) -> usize {
-    let mut count = 0;
-    let turned = |p: Point3| [p.x * sin - p.y * cos, -p.z, p.x * cos + p.y * sin];
-    for segment in node.segments() {
-        let (start, end) = (turned(segment.start), turned(segment.end));
-        let farthest = math::max(start[2], end[2]) - center_m[1] + reach_m;
-        let leftmost = math::min(start[0], end[0]) - center_m[0] - reach_m;
-        let rightmost = math::max(start[0], end[0]) - center_m[0] + reach_m;
-        let may_be_seen = (farthest > 0.0) & (leftmost < right * farthest) & (rightmost > -left * farthest);
-        // Which will be seen no processor guesses: all are written, and those that count stay.
-        let Some(place) = storage.get_mut(count) else { break };
-        *place = ViewSegment { start, end, extent_px: 0.0 };
-        count += usize::from(may_be_seen);
+    run(Turn { node, sin_cos, sides, center_m, reach_m, storage })
+}
+
+/// [`turn_model`] as work for any machine.
+struct Turn<'a, 'm> {
+    node: &'a Node<'m>,
+    sin_cos: (f32, f32),
+    sides: [f32; 2],
+    center_m: [f32; 2],
+    reach_m: f32,
+    storage: &'a mut [ViewSegment],
+}
+
+impl Work for Turn<'_, '_> {
+    type Output = usize;
+
+    #[inline(always)]
+    fn run<B: Body>(self, _: B) -> usize {
+        let Self { node, sin_cos: (sin, cos), sides: [left, right], center_m, reach_m, storage } = self;
+        let mut count = 0;
+        let turned = |p: Point3| [p.x * sin - p.y * cos, -p.z, p.x * cos + p.y * sin];
+        for segment in node.segments() {
+            let (start, end) = (turned(segment.start), turned(segment.end));
+            let farthest = math::max(start[2], end[2]) - center_m[1] + reach_m;
+            let leftmost = math::min(start[0], end[0]) - center_m[0] - reach_m;
+            let rightmost = math::max(start[0], end[0]) - center_m[0] + reach_m;
+            let may_be_seen = (farthest > 0.0) & (leftmost < right * farthest) & (rightmost > -left * farthest);
+            // Which will be seen no processor guesses: all are written, and those that count stay.
+            let Some(place) = storage.get_mut(count) else { break };
+            *place = ViewSegment { start, end, extent_px: 0.0 };
+            count += usize::from(may_be_seen);
+        }
+        count
     }
-    count
 }
