@@ -116,8 +116,8 @@ pub fn looks() -> Vec<LookWorkload> {
     vec![
         look("8_nodes", paper, 8, (7, 916_674_167, 4)),
         look("72_nodes", paper, 72, (12, 937_130_882, 32)),
-        look("8_nodes_verified", verifying, 8, (7, 766_126_080, 8)),
-        look("72_nodes_verified", verifying, 72, (12, 681_707_520, 72)),
+        look("8_nodes_verified", verifying, 8, (7, 770_235_392, 8)),
+        look("72_nodes_verified", verifying, 72, (12, 685_177_856, 72)),
     ]
 }
 

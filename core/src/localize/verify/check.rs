@@ -2,12 +2,12 @@
 
 use super::Evidence;
 use super::cameras::{BATCH, Cameras, SeenPart};
-use super::channel::{CHANNELS, channel_in_lane};
+use super::channel::channel_in_lane;
 use super::distance_planes::DistancePlanes;
 use super::frustum::Frustum;
 use super::image_frame::ImageFrame;
 use super::kept_looks::{KeptLooks, LookPose};
-use super::lanes::{LANES, Lane, MAX_POINTS, Tables, any, rounded};
+use super::lanes::{LANES, Lane, MAX_POINTS, Tables, any};
 use super::responses::Responses;
 use super::seen_segment::SeenSegment;
 use super::view::{ViewSegment, turn_model};
@@ -23,8 +23,8 @@ pub(super) const VIEW_CAPACITY: usize = 384;
 const FIXED_TOLERANCE_PX: f32 = 6.0;
 /// Error of the model itself \[m\].
 const MODEL_ERROR_M: f32 = 0.012;
-/// Weights of the four response widths, in Q8: what is predicted loosely counts less.
-const WEIGHTS_Q8: [i32; 4] = [256, 205, 141, 77];
+/// Weights of the four response widths: what is predicted loosely counts less.
+const WEIGHTS: [f32; 4] = [1.0, 0.8, 0.55, 0.3];
 
 /// How exactly a hypothesis is posed, and how closely it is looked at.
 #[derive(Debug, Clone, Copy)]
@@ -176,7 +176,13 @@ impl<'m> Checker<'m> {
 
     /// Evidence for as many cameras as there are places in `found`, `N` at a time.
     #[inline(always)]
-    fn evidence_in_lanes<const N: usize>(&self, cameras: &Cameras, closeness: &Closeness, found: &mut [Evidence]) {
+    fn evidence_in_lanes<const N: usize, B: Body>(
+        &self,
+        body: B,
+        cameras: &Cameras,
+        closeness: &Closeness,
+        found: &mut [Evidence],
+    ) {
         let focal = self.frame.focal_px;
         let (position, model) = (focal * closeness.position_m, focal * MODEL_ERROR_M);
         let heading = focal * closeness.heading_rad;
@@ -185,8 +191,8 @@ impl<'m> Checker<'m> {
             depth_part: position * position + model * model,
         };
         let per_px = 1.0 / closeness.spacing_px;
-        let mut explained = [0_i32; BATCH];
-        let mut total = [0_i32; BATCH];
+        let mut explained = [0.0; BATCH];
+        let mut total = [0.0; BATCH];
         for segment in self.view() {
             let Some(planes) = cameras.planes_across(segment.start, segment.end) else { continue };
             let count = Self::point_count(segment, per_px);
@@ -196,34 +202,29 @@ impl<'m> Checker<'m> {
                     continue;
                 }
                 let image = self.project_in_lanes(segment, &cameras.offsets::<N>(first), &part);
-                let is_seen = image.is_seen(&self.filter);
-                if any(&is_seen) {
-                    let [more_explained, more] = self.evidence_of_segment(&image, &is_seen, &tolerance, count);
-                    for lane in 0..N {
-                        explained[(first + lane) % BATCH] += more_explained[lane];
-                        total[(first + lane) % BATCH] += more[lane];
-                    }
+                if image.is_any_seen() {
+                    let [more_explained, more] = self.evidence_of_segment(body, &image, &tolerance, count);
+                    add(&mut explained, first, &more_explained);
+                    add(&mut total, first, &more);
                 }
             }
         }
         for (index, found) in found.iter_mut().enumerate().take(BATCH) {
-            *found = Evidence { explained_q4: explained[index], total_q4: total[index] };
+            *found = Evidence { explained_q4: in_q4(explained[index]), total_q4: in_q4(total[index]) };
         }
     }
 
-    /// What a segment explains and what it would at most, in Q4 px.
+    /// What a segment explains and what it would at most, in 1/255 px.
     #[inline(always)]
     fn evidence_of_segment<const N: usize>(
         &self,
+        body: impl Body,
         image: &LaneImage<N>,
-        is_seen: &Lane<bool, N>,
         tolerance: &Tolerance,
         count: usize,
-    ) -> [Lane<i32, N>; 2] {
+    ) -> [Lane<f32, N>; 2] {
         let mut width = [0_u32; N];
         let mut channel = [0_u32; N];
-        let mut background = [0_i32; N];
-        let mut weight = [0_i32; N];
         for lane in 0..N {
             width[lane] = tolerance.width(image.inverse_depth[lane]);
             channel[lane] = channel_in_lane(image.way[0][lane], image.way[1][lane]);
@@ -237,22 +238,20 @@ impl<'m> Checker<'m> {
                 first[axis][lane] = image.start[axis][lane] * 0.25 + 0.5 * step[axis][lane];
             }
         }
-        let backgrounds = self.responses.backgrounds();
+        let mut place = [0_u32; N];
+        let mut weight_px = [0.0; N];
         for lane in 0..N {
-            let (channel, width) = (channel[lane] as usize & (CHANNELS - 1), width[lane] as usize & 3);
-            background[lane] = i32::from(backgrounds[channel][width]);
-            let length_q4 = if is_seen[lane] { rounded(image.length[lane] * 16.0) } else { 0 };
-            weight[lane] = (length_q4 * WEIGHTS_Q8[width]) >> 8;
+            place[lane] = 4 * channel[lane] + width[lane];
+            weight_px[lane] = image.seen_px[lane] * WEIGHTS[width[lane] as usize & 3];
         }
-        let tables = Tables { planes: self.planes.all(), responses: self.responses.tables() };
-        let sum = tables.sum(count, (first, step), &channel, &width);
-        let share_q16 = POINT_SHARES_Q16[count];
-        let (mut explained, mut total) = ([0; N], [0; N]);
+        let background = body.bytes_at(self.responses.backgrounds(), &place);
+        let tables = Tables { planes: self.planes.all(), responses: self.responses.table() };
+        let sum = tables.sum(body, count, (first, step), &channel, &width);
+        let (mut explained, mut total) = ([0.0; N], [0.0; N]);
         for lane in 0..N {
-            // At most 16,384 x 255: far from the border of i32.
-            let mean = (sum[lane] * share_q16) >> 16;
-            explained[lane] = (weight[lane] * (mean - background[lane]) + 128) >> 8;
-            total[lane] = (weight[lane] * (255 - background[lane]) + 128) >> 8;
+            let (mean, background) = (sum[lane] as f32 * POINT_SHARES[count], background[lane] as i32 as f32);
+            explained[lane] = weight_px[lane] * (mean - background);
+            total[lane] = weight_px[lane] * (255.0 - background);
         }
         [explained, total]
     }
@@ -265,9 +264,9 @@ impl<'m> Checker<'m> {
         [right, forward]: &[Lane<f32, N>; 2],
         part: &SeenPart<N>,
     ) -> LaneImage<N> {
-        let frame = &self.frame;
+        let (frame, filter) = (&self.frame, &self.filter);
         let ([start_x, start_y, start_z], [end_x, end_y, end_z]) = (segment.start, segment.end);
-        let mut image = LaneImage { is_inside: part.is_any(), ..LaneImage::EMPTY };
+        let mut image = LaneImage::EMPTY;
         for lane in 0..N {
             let (x, z) = (start_x - right[lane], start_z - forward[lane]);
             let (way_x, way_y, way_z) = ((end_x - right[lane]) - x, end_y - start_y, (end_z - forward[lane]) - z);
@@ -282,7 +281,10 @@ impl<'m> Checker<'m> {
                 image.way[axis][lane] = image_end[axis] - image_start[axis];
             }
             let (width, height) = (magnitude(image.way[0][lane]), magnitude(image.way[1][lane]));
-            image.length[lane] = octagonal_length(width, height);
+            let length_px = octagonal_length(width, height);
+            let is_seen =
+                (from < to) & (length_px >= filter.min_length_px) & (height >= filter.horizontal_slope * width);
+            image.seen_px[lane] = if is_seen { length_px } else { 0.0 };
             image.inverse_depth[lane] = 0.5 * (start_inverse + end_inverse);
         }
         image
@@ -353,16 +355,16 @@ impl Work for Batch<'_, '_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<B: Body>(self, _: B) {
+    fn run<B: Body>(self, body: B) {
         /// Lanes that leave few idle where there are few cameras.
         const HALF: usize = LANES.div_ceil(2);
         let Self { checker, cameras, closeness, found } = self;
         if found.len() == 1 {
-            checker.evidence_in_lanes::<1>(cameras, closeness, found);
+            checker.evidence_in_lanes::<1, B>(body, cameras, closeness, found);
         } else if found.len() <= HALF {
-            checker.evidence_in_lanes::<HALF>(cameras, closeness, found);
+            checker.evidence_in_lanes::<HALF, B>(body, cameras, closeness, found);
         } else {
-            checker.evidence_in_lanes::<LANES>(cameras, closeness, found);
+            checker.evidence_in_lanes::<LANES, B>(body, cameras, closeness, found);
         }
     }
 }
@@ -372,31 +374,18 @@ impl Work for Batch<'_, '_> {
 struct LaneImage<const N: usize> {
     start: [Lane<f32, N>; 2],
     way: [Lane<f32, N>; 2],
-    length: Lane<f32, N>,
+    /// Length where the segment is in view, long enough and not near-horizontal, else 0.
+    seen_px: Lane<f32, N>,
     inverse_depth: Lane<f32, N>,
-    is_inside: Lane<bool, N>,
 }
 
 impl<const N: usize> LaneImage<N> {
-    const EMPTY: Self = Self {
-        start: [[0.0; N]; 2],
-        way: [[0.0; N]; 2],
-        length: [0.0; N],
-        inverse_depth: [0.0; N],
-        is_inside: [false; N],
-    };
+    const EMPTY: Self = Self { start: [[0.0; N]; 2], way: [[0.0; N]; 2], seen_px: [0.0; N], inverse_depth: [0.0; N] };
 
-    /// In which lanes the segment is in view, long enough and not near-horizontal.
+    /// Whether the segment is seen in any lane.
     #[inline(always)]
-    fn is_seen(&self, filter: &SegmentFilter) -> Lane<bool, N> {
-        let mut is_seen = [false; N];
-        for (lane, is_seen) in is_seen.iter_mut().enumerate() {
-            let (width, height) = (magnitude(self.way[0][lane]), magnitude(self.way[1][lane]));
-            *is_seen = self.is_inside[lane]
-                & (self.length[lane] >= filter.min_length_px)
-                & (height >= filter.horizontal_slope * width);
-        }
-        is_seen
+    fn is_any_seen(&self) -> bool {
+        self.seen_px.iter().fold(false, |any, length_px| any | (*length_px > 0.0))
     }
 }
 
@@ -411,16 +400,19 @@ const POINT_SHARES: [f32; MAX_POINTS + 1] = {
     shares
 };
 
-/// `1 / count` in Q16, rounded up so that equal responses keep their mean.
-const POINT_SHARES_Q16: [i32; MAX_POINTS + 1] = {
-    let mut shares = [0; MAX_POINTS + 1];
-    let mut count = 1;
-    while count <= MAX_POINTS {
-        shares[count] = (1 << 16) / count as i32 + 1;
-        count += 1;
+/// A length in units of 1/255 px in Q4 px.
+fn in_q4(length: f32) -> i32 {
+    math::round_to_i32(length * (16.0 / 255.0))
+}
+
+/// Adds `more` to as many of `sums` from the `first` on.
+#[inline(always)]
+fn add<const N: usize>(sums: &mut [f32; BATCH], first: usize, more: &Lane<f32, N>) {
+    let Some(sums) = sums.get_mut(first..).and_then(<[f32]>::first_chunk_mut::<N>) else { return };
+    for (sum, more) in sums.iter_mut().zip(more) {
+        *sum += more;
     }
-    shares
-};
+}
 
 /// Magnitude of a number, without a call.
 #[inline(always)]

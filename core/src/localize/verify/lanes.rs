@@ -5,7 +5,8 @@
 
 use super::channel::CHANNELS;
 use super::distance_planes::{COLUMNS, PLANE, ROWS};
-use super::responses::WIDTHS_PX;
+use super::responses::{ResponseTable, step_of};
+use crate::matching::Body;
 
 /// Poses under way at a time: what fills the vectors of the machine. One without vectors takes one pose after the other,
 /// and is spared what that one does not see.
@@ -42,8 +43,7 @@ pub(super) fn any<const N: usize>(lanes: &Lane<bool, N>) -> bool {
 pub(super) struct Tables<'t> {
     /// The distances of all channels, pixel by pixel.
     pub(super) planes: &'t [u8; CHANNELS * PLANE],
-    /// Response of each width to each distance.
-    pub(super) responses: &'t [[u8; 256]; WIDTHS_PX.len()],
+    pub(super) responses: &'t ResponseTable,
 }
 
 impl Tables<'_> {
@@ -51,6 +51,7 @@ impl Tables<'_> {
     #[inline(always)]
     pub(super) fn sum<const N: usize>(
         &self,
+        body: impl Body,
         count: usize,
         (first, step): ([Lane<f32, N>; 2], [Lane<f32, N>; 2]),
         channel: &Lane<u32, N>,
@@ -68,9 +69,13 @@ impl Tables<'_> {
                 x[lane] += step[0][lane];
                 y[lane] += step[1][lane];
             }
+            let mut steps = body.bytes_at(self.planes.as_chunks().0, &at);
             for lane in 0..N {
-                let distance = self.planes[(at[lane] as usize).min(CHANNELS * PLANE - 1)];
-                sum[lane] += i32::from(self.responses[(width[lane] & 3) as usize][usize::from(distance)]);
+                steps[lane] = step_of(steps[lane], width[lane] & 3);
+            }
+            let responses = body.bytes_of_few(self.responses, &steps);
+            for lane in 0..N {
+                sum[lane] += responses[lane] as i32;
             }
         }
         sum

@@ -1,58 +1,72 @@
 //! How well a distance agrees with a prediction, given how exact the prediction can be.
 
 use super::channel::CHANNELS;
-use super::distance_planes::{DistancePlanes, PLANE, UNITS_PER_PIXEL};
+use super::distance_planes::{COLUMNS, DistancePlanes, PLANE, UNITS_PER_PIXEL};
 use crate::math;
 
-/// Widths of the response, standard deviations in px of the normal image.
-pub(super) const WIDTHS_PX: [f32; 4] = [7.0, 14.0, 28.0, 56.0];
+/// Number of widths of the response, standard deviations of 7, 14, 28 and 56 px of the normal image.
+pub(super) const WIDTHS: usize = 4;
+/// The least of them \[px\].
+const LEAST_WIDTH_PX: f32 = 7.0;
+/// Steps of the table to a unit of distance, at the least width.
+const STEPS_PER_UNIT: u32 = 4;
+/// The step that nothing responds to.
+const OUT_OF_REACH: u32 = 127;
 
-/// `exp(-d^2 / 2 s^2)` in 1/255, for each width and each distance of a plane.
+/// A byte for each step, in fours.
+pub(super) type ResponseTable = [[u8; 4]; 32];
+
+/// `exp(-d^2 / 2 s^2)` in 1/255. As every width `s` is twice the one before, one table of `d / s` serves them all.
 #[derive(Debug)]
 pub(super) struct Responses {
-    table: [[u8; 256]; WIDTHS_PX.len()],
+    table: ResponseTable,
     /// The mean response of each channel and width over the image: what chance explains.
-    background: [[u8; WIDTHS_PX.len()]; CHANNELS],
+    background: [[u8; WIDTHS]; CHANNELS],
+}
+
+/// The step of the table for a distance of a plane, at one of the [`WIDTHS`].
+#[inline(always)]
+pub(super) fn step_of(distance: u32, width: u32) -> u32 {
+    // The greatest distance, which means none or out of reach, responds to no width.
+    ((distance * STEPS_PER_UNIT) >> width).min(OUT_OF_REACH)
 }
 
 impl Responses {
     pub(super) fn new() -> Self {
-        let mut table = [[0; 256]; WIDTHS_PX.len()];
-        for (row, width_px) in table.iter_mut().zip(WIDTHS_PX) {
-            for (units, response) in row.iter_mut().enumerate() {
-                let distances = units as f32 * 4.0 / UNITS_PER_PIXEL as f32 / width_px;
-                *response = math::round(255.0 * math::exp(-0.5 * distances * distances)) as u8;
-            }
-            // The greatest distance means: none, or out of reach.
-            row[255] = 0;
+        let mut table = ResponseTable::default();
+        for (step, response) in table.as_flattened_mut().iter_mut().enumerate().take(OUT_OF_REACH as usize) {
+            let px_per_step = 4.0 / (UNITS_PER_PIXEL as f32 * STEPS_PER_UNIT as f32);
+            let distances = step as f32 * px_per_step / LEAST_WIDTH_PX;
+            *response = math::round(255.0 * math::exp(-0.5 * distances * distances)) as u8;
         }
-        Self { table, background: [[0; WIDTHS_PX.len()]; CHANNELS] }
+        Self { table, background: [[0; WIDTHS]; CHANNELS] }
     }
 
-    /// Measures the background of newly drawn planes.
+    /// Measures the background of newly drawn planes: distances change so little from row to row that every other will do.
     pub(super) fn measure_background(&mut self, planes: &DistancePlanes<'_>) {
         let mut counts = [[0_u16; 256]; CHANNELS];
-        for pixel in planes.pixels() {
+        for pixel in planes.pixels().chunks_exact(COLUMNS).step_by(2).flatten() {
             for (counts, distance) in counts.iter_mut().zip(pixel) {
                 counts[usize::from(*distance)] += 1;
             }
         }
         for (background, counts) in self.background.iter_mut().zip(&counts) {
-            for (mean, table) in background.iter_mut().zip(&self.table) {
-                let both = counts.iter().zip(table);
-                let sum: u32 = both.map(|(count, response)| u32::from(*count) * u32::from(*response)).sum();
-                *mean = (sum / PLANE as u32) as u8;
+            for (mean, width) in background.iter_mut().zip(0..) {
+                let response = |distance: u32| u32::from(self.table.as_flattened()[step_of(distance, width) as usize]);
+                let sum: u32 =
+                    counts.iter().zip(0..).map(|(count, distance)| u32::from(*count) * response(distance)).sum();
+                *mean = (sum / (PLANE / 2) as u32) as u8;
             }
         }
     }
 
-    /// The responses of each width to each distance.
-    pub(super) const fn tables(&self) -> &[[u8; 256]; WIDTHS_PX.len()] {
+    /// The responses, by the step of their distance.
+    pub(super) const fn table(&self) -> &ResponseTable {
         &self.table
     }
 
     /// The background of each channel and width.
-    pub(super) const fn backgrounds(&self) -> &[[u8; WIDTHS_PX.len()]; CHANNELS] {
+    pub(super) const fn backgrounds(&self) -> &[[u8; WIDTHS]; CHANNELS] {
         &self.background
     }
 }

@@ -53,6 +53,23 @@ pub(crate) trait Body: Copy {
     /// Hints that a panel's row will soon be read.
     #[inline(always)]
     fn will_read(self, _: &PanelRow) {}
+
+    /// The bytes of `table` at `places`; 0 beyond its end.
+    #[inline(always)]
+    fn bytes_at<const N: usize>(self, table: &[[u8; 4]], places: &[u32; N]) -> [u32; N] {
+        let bytes = table.as_flattened();
+        let mut found = [0; N];
+        for (found, place) in found.iter_mut().zip(places) {
+            *found = bytes.get(*place as usize).map_or(0, |byte| u32::from(*byte));
+        }
+        found
+    }
+
+    /// The same of so few bytes that vectors may hold them; of higher places only the low bits count.
+    #[inline(always)]
+    fn bytes_of_few<const N: usize>(self, table: &[[u8; 4]; 32], places: &[u32; N]) -> [u32; N] {
+        places.map(|place| u32::from(table.as_flattened()[place as usize % 128]))
+    }
 }
 
 /// The panels' rows that all of them have.
@@ -176,6 +193,26 @@ mod tests {
         }
     }
 
+    /// The bytes at some places, of a table and of its beginning, for different numbers of lanes.
+    struct Bytes<'a>(&'a [[u8; 4]], [u32; LANES]);
+
+    impl Work for Bytes<'_> {
+        type Output = Vec<u32>;
+
+        fn run<B: Body>(self, body: B) -> Vec<u32> {
+            let Self(table, places) = self;
+            let few = core::array::from_fn(|quad| table.get(quad).copied().unwrap_or_default());
+            let part = core::array::from_fn::<u32, 5, _>(|lane| places[lane]);
+            let mut found = Vec::new();
+            found.extend(body.bytes_at(table, &places));
+            found.extend(body.bytes_at(table, &part));
+            found.extend(body.bytes_at(table, &[places[0]]));
+            found.extend(body.bytes_of_few(&few, &places));
+            found.extend(body.bytes_of_few(&few, &part));
+            found
+        }
+    }
+
     /// Roots are Q15 magnitudes, at times full ones or none.
     fn roots() -> impl Strategy<Value = [i16; 2]> {
         let root = || prop_oneof![4 => 0..=i16::MAX, 1 => Just(0), 1 => Just(i16::MAX)];
@@ -194,6 +231,18 @@ mod tests {
             let panel: Vec<PanelRow> = panel.into_iter().map(|roots| PanelRow { roots }).collect();
             let expected = Coefficients(&rows, &panel).run(portable::Portable);
             for (name, found) in x86_64::run_all(|| Coefficients(&rows, &panel)) {
+                prop_assert_eq!(&found, &expected, "{}", name);
+            }
+        }
+
+        // Places within the table, about its end, and far beyond.
+        #[test]
+        fn all_bodies_find_the_same_bytes(
+            table in prop::collection::vec(prop::array::uniform4(any::<u8>()), 0..60),
+            places in prop::array::uniform16(prop_oneof![4 => 0_u32..260, 1 => any::<u32>()]),
+        ) {
+            let expected = Bytes(&table, places).run(portable::Portable);
+            for (name, found) in x86_64::run_all(|| Bytes(&table, places)) {
                 prop_assert_eq!(&found, &expected, "{}", name);
             }
         }

@@ -4,8 +4,9 @@ use super::{detection, prefetch};
 use crate::matching::kernels::{Body, LANES, as_far_as_all_go, rows_at};
 use crate::matching::{BinPair, PanelRow};
 use core::arch::x86_64::{
-    __m512i, _mm512_add_epi32, _mm512_dpwssd_epi32, _mm512_max_epi32, _mm512_reduce_max_epi32, _mm512_set1_epi32,
-    _mm512_setzero_si512,
+    __m512i, _mm512_add_epi32, _mm512_and_si512, _mm512_cmplt_epu32_mask, _mm512_dpwssd_epi32,
+    _mm512_mask_i32gather_epi32, _mm512_max_epi32, _mm512_permutex2var_epi32, _mm512_reduce_max_epi32,
+    _mm512_set1_epi32, _mm512_setzero_si512, _mm512_slli_epi32, _mm512_srli_epi32, _mm512_srlv_epi32,
 };
 
 /// Sums under way at a time: one multiply-and-accumulate takes as long as four begin.
@@ -40,6 +41,51 @@ impl Body for Avx512 {
     fn will_read(self, row: &PanelRow) {
         prefetch(row);
     }
+
+    #[inline(always)]
+    fn bytes_at<const N: usize>(self, table: &[[u8; 4]], places: &[u32; N]) -> [u32; N] {
+        // SAFETY: `self` is only made where AVX-512 F was found.
+        in_all_lanes(places, |places| unsafe { bytes_at(table, places) })
+    }
+
+    #[inline(always)]
+    fn bytes_of_few<const N: usize>(self, table: &[[u8; 4]; 32], places: &[u32; N]) -> [u32; N] {
+        // SAFETY: `self` is only made where AVX-512 F was found.
+        in_all_lanes(places, |places| unsafe { bytes_of_few(table, places) })
+    }
+}
+
+/// Does with a whole vector what is asked for `N` numbers.
+#[inline(always)]
+fn in_all_lanes<const N: usize>(numbers: &[u32; N], work: impl FnOnce(__m512i) -> __m512i) -> [u32; N] {
+    const { assert!(N <= LANES, "a vector holds them") };
+    let mut lanes = [0; LANES];
+    lanes[..N].copy_from_slice(numbers);
+    let lanes: [u32; LANES] = zerocopy::transmute!(work(zerocopy::transmute!(lanes)));
+    core::array::from_fn(|lane| lanes[lane])
+}
+
+/// Four bytes are read for each place, and those that were not asked for are dropped.
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn bytes_at(table: &[[u8; 4]], places: __m512i) -> __m512i {
+    let quads = _mm512_srli_epi32::<2>(places);
+    let within = _mm512_cmplt_epu32_mask(quads, _mm512_set1_epi32(table.len() as i32));
+    let bits = _mm512_slli_epi32::<3>(_mm512_and_si512(places, _mm512_set1_epi32(3)));
+    // SAFETY: only the quads within the table are read; indices of four bytes each are signed, and a table of more than
+    // `i32::MAX` quads has a length that is cut to its low bits, none of which then counts above it.
+    let four =
+        unsafe { _mm512_mask_i32gather_epi32::<4>(_mm512_setzero_si512(), within, quads, table.as_ptr().cast()) };
+    _mm512_and_si512(_mm512_srlv_epi32(four, bits), _mm512_set1_epi32(0xff))
+}
+
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn bytes_of_few(table: &[[u8; 4]; 32], places: __m512i) -> __m512i {
+    let [low, high]: [__m512i; 2] = zerocopy::transmute!(*table);
+    let four = _mm512_permutex2var_epi32(low, _mm512_srli_epi32::<2>(places), high);
+    let bits = _mm512_slli_epi32::<3>(_mm512_and_si512(places, _mm512_set1_epi32(3)));
+    _mm512_and_si512(_mm512_srlv_epi32(four, bits), _mm512_set1_epi32(0xff))
 }
 
 #[inline]
