@@ -40,11 +40,13 @@ struct Stage {
     position_left: f32,
     /// What the heading may still be off, in what the grid leaves it to be.
     heading_left: f32,
+    /// Distance between points that are looked up \[px\].
+    spacing_px: f32,
 }
 
 const STAGES: [Stage; 2] = [
-    Stage { step: 1.0 / 4.0, heading_step: 2.0 / 3.0, position_left: 0.11, heading_left: 1.0 / 3.0 },
-    Stage { step: 1.0 / 16.0, heading_step: 2.0 / 9.0, position_left: 0.03, heading_left: 1.0 / 9.0 },
+    Stage { step: 1.0 / 4.0, heading_step: 2.0 / 3.0, position_left: 0.11, heading_left: 1.0 / 3.0, spacing_px: 18.0 },
+    Stage { step: 1.0 / 16.0, heading_step: 2.0 / 9.0, position_left: 0.03, heading_left: 1.0 / 9.0, spacing_px: 9.0 },
 ];
 
 /// All hypotheses.
@@ -283,7 +285,7 @@ impl<'m> Search<'m> {
         let closeness = Closeness {
             position_m: stage.position_left * self.cell_m,
             heading_rad: stage.heading_left * heading_left_rad,
-            spacing_px: 9.0,
+            spacing_px: stage.spacing_px,
         };
         let child_of = |parent: &Hypothesis, index: usize| {
             let middle = 0.5 * (SIDE - 1) as f32;
