@@ -5,7 +5,7 @@ use std::process::Command;
 use crate::budgets::{self, Budgets, Counts};
 use crate::setup::{self, Program};
 use crate::summary::Outcome;
-use crate::workspace::{Workspace, run_all, run_together};
+use crate::workspace::{Workspace, run, run_all, run_together};
 
 /// One named check.
 #[derive(Debug)]
@@ -42,6 +42,13 @@ pub(crate) static STEPS: &[Step] = &[
     full("qemu", "kernels and localizer on emulated Cortex-M4, M7 and M33 give the host's bits, within budget", qemu),
     full("aarch64", "the same on an emulated 64-bit Arm", aarch64),
     full("wasm", "the same in WebAssembly", wasm),
+    Step {
+        name: "miri",
+        about: "Miri finds nothing undefined in the kernels for SSE2 and AVX2 (needs a nightly toolchain)",
+        is_in_full: false,
+        is_quick: false,
+        run: miri,
+    },
 ];
 
 /// Targets the library is built for to show that it needs no `std`.
@@ -170,6 +177,26 @@ fn aarch64(workspace: &Workspace) -> Outcome {
 
 fn wasm(workspace: &Workspace) -> Outcome {
     run_board(workspace, WASM_BOARD, setup::WASM_ENGINE)
+}
+
+/// Interprets the tests that hold the bodies against each other, on a few drawn inputs; that of whole histograms would take
+/// minutes. The square root is not to be assembly there.
+fn miri(workspace: &Workspace) -> Outcome {
+    let nightly = |arguments: &str| {
+        let mut command = workspace.tool("rustup", "");
+        command.args(["run", "nightly", "cargo", "miri"]).args(arguments.split_whitespace());
+        command
+    };
+    if run(nightly("--version")).is_err() {
+        let remedy = "rustup toolchain install nightly --profile minimal --component miri --component rust-src";
+        return Outcome::Skipped(format!("no nightly toolchain with Miri; install it: {remedy}"));
+    }
+    let mut command = nightly(
+        "test --locked --package edgeloc --features libm/force-soft-floats --lib -- same_coefficients same_bytes",
+    );
+    command.env("PROPTEST_CASES", "1").env("MIRIFLAGS", "-Zmiri-disable-isolation");
+    command.env("RUSTFLAGS", "-Ctarget-feature=+avx2,+bmi1,+bmi2,+lzcnt,+popcnt");
+    run_all([command])
 }
 
 fn run_board(workspace: &Workspace, board: &str, runner: Program) -> Outcome {
