@@ -114,6 +114,6 @@ fn damaged_looks_are_errors() {
         let cut = &golden.looks[..length];
         assert!(compare(&golden.map, cut, "", &mut memory, |_| ()).is_err(), "cut to {length} bytes");
     }
-    assert!(compare(&golden.map, b"edgelook\x04\0\0\0\0\0\0\0", "", &mut memory, |_| ()).is_err());
+    assert!(compare(&golden.map, b"edgelook\x03\0\0\0\0\0\0\0", "", &mut memory, |_| ()).is_err());
     assert!(compare(&golden.looks, &golden.looks, "", &mut memory, |_| ()).is_err());
 }

@@ -4,8 +4,8 @@
 //!
 //! | part | fields in order |
 //! |---|---|
-//! | header | 8 bytes `"edgelook"`; u16 version, 3; u16 number of configurations; u32 number of attempts |
-//! | configuration | u16 distance bins, u16 angle bins, f32 greatest distance \[px\]; u8 signed, u8 uses polarity, u8 interpolates the angle, u8 zero; f32 score margin; f32 turn \[rad\]; u16 most looks, u16 most segments; f32 least length \[px\]; f32 horizontal exclusion \[rad\]; u8 verifies, u8 looks next where predicted; u16 cells per side, u16 headings, u16 refined, u16 finalists, u16 moves; f32 reach, f32 confidence, f32 move \[m\]; zeros where nothing is verified |
+//! | header | 8 bytes `"edgelook"`; u16 version, 4; u16 number of configurations; u32 number of attempts |
+//! | configuration | u16 distance bins, u16 angle bins, f32 greatest distance \[px\]; u8 signed, u8 uses polarity, u8 interpolates the angle, u8 zero; f32 score margin; f32 turn \[rad\]; u16 most looks, u16 most segments, u16 shortlist; f32 least length \[px\]; f32 horizontal exclusion \[rad\]; u8 verifies, u8 looks next where predicted; u16 cells per side, u16 headings, u16 refined, u16 finalists, u16 moves; f32 reach, f32 confidence, f32 move \[m\]; zeros where nothing is verified |
 //! | attempt | u8 length of its name, the name in UTF-8; u16 index of its configuration; u16 number of looks; u32 words of memory, 0 for as many as it takes; its looks |
 //! | look | u8 whether there is a heading, f32 heading and f32 its standard deviation \[rad\]; u8 whether there is odometry, f32 turn \[rad\] and f32 way straight ahead after it \[m\]; u16 number of segments; the segments |
 //! | segment | f32 start x and y, f32 end x and y \[px\]; u8 1 where the brighter side lies to the right |
@@ -21,9 +21,9 @@ use edgeloc::pgh::{DistanceKind, PghShape};
 /// The first eight bytes.
 pub const MAGIC: [u8; 8] = *b"edgelook";
 /// The version this crate reads.
-pub const VERSION: u16 = 3;
+pub const VERSION: u16 = 4;
 /// Length of a configuration.
-pub const CONFIG_LEN: usize = 56;
+pub const CONFIG_LEN: usize = 58;
 /// Length of a segment.
 pub const SEGMENT_LEN: usize = 17;
 
@@ -152,9 +152,9 @@ fn read_config(cursor: &mut Cursor<'_>) -> Result<LocalizerConfig, LooksError> {
         turn: Angle::from_radians(cursor.f32()?),
         max_looks: cursor.u16()?,
         max_segments: cursor.u16()?,
+        shortlist: cursor.u16()?,
         min_length_px: cursor.f32()?,
         horizontal_exclusion: Angle::from_radians(cursor.f32()?),
-        shortlist: LocalizerConfig::paper().shortlist,
         verification: None,
     };
     let [verifies, is_predicted] = cursor.array()?.map(|flag| flag != 0);

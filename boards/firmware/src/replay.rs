@@ -67,8 +67,7 @@ pub fn replay(
     let mut counts = Counts::default();
     for attempt_index in 0..reader.attempt_count() {
         let attempt = reader.attempt().map_err(ReplayError::Looks)?;
-        let words =
-            attempt.memory_words.unwrap_or_else(|| Localizer::memory_len(&attempt.config, database.node_count()));
+        let words = attempt.memory_words.unwrap_or_else(|| Localizer::memory_len_in(&attempt.config, &database));
         let capacity = memory.len();
         let memory = memory.get_mut(..words);
         let memory =

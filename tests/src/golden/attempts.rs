@@ -23,6 +23,7 @@ pub(super) fn all(site: &Site) -> Vec<Attempt> {
     list.crowded_scenes();
     list.refusals();
     list.verified();
+    list.shortlisted();
     list.attempts
 }
 
@@ -196,6 +197,23 @@ impl List<'_> {
         let mut looks = self.moving_looks(Start::Near, 7);
         looks.iter_mut().for_each(|look| (look.segments, look.motion) = (Vec::new(), None));
         self.push("verified, empty scenes".to_owned(), edgeloc, looks);
+    }
+
+    /// Nodes chosen by their gist before any is scored: by one heading, by several, and by all.
+    fn shortlisted(&mut self) {
+        let paper = LocalizerConfig { shortlist: 4, ..LocalizerConfig::paper() };
+        self.look_around("4 of the nodes, near".to_owned(), paper, Start::Near, 3, &Sources::default());
+        self.look_around("4 of the nodes, anywhere".to_owned(), paper, Start::Anywhere, 3, &Sources::default());
+
+        let few = VerificationConfig { cells_per_side: 3, refined: 6, finalists: 3, ..VerificationConfig::reference() };
+        let verified = LocalizerConfig { shortlist: 3, verification: Some(few), ..LocalizerConfig::edgeloc() };
+        let looks = self.moving_looks(Start::Anywhere, 3);
+        self.push("verified, 3 of the nodes".to_owned(), verified, looks);
+        let mut looks = self.moving_looks(Start::Near, 3);
+        looks.iter_mut().for_each(|look| look.spread_rad = 0.0875);
+        self.push("verified, 3 of the nodes, a compass that errs".to_owned(), verified, looks.clone());
+        looks.iter_mut().for_each(|look| look.heading = None);
+        self.push("verified, 3 of the nodes, no compass".to_owned(), verified, looks);
     }
 
     /// A robot with odometry that drives 0.6 m after a full turn.

@@ -64,6 +64,7 @@ fn write_config(bytes: &mut Vec<u8>, config: &LocalizerConfig) {
     bytes.extend(config.turn.radians().to_le_bytes());
     bytes.extend(config.max_looks.to_le_bytes());
     bytes.extend(config.max_segments.to_le_bytes());
+    bytes.extend(config.shortlist.to_le_bytes());
     bytes.extend(config.min_length_px.to_le_bytes());
     bytes.extend(config.horizontal_exclusion.radians().to_le_bytes());
     let verifies = config.verification.is_some();
@@ -131,6 +132,7 @@ mod tests {
         let mut config = LocalizerConfig::paper();
         config.shape.distance = DistanceKind::Unsigned;
         config.turn = Angle::from_degrees(-45.0);
+        config.shortlist = 4;
         config.verification = LocalizerConfig::edgeloc().verification;
         let plain = Attempt { name: "plain".to_owned(), config: LocalizerConfig::paper(), memory_words: None, looks };
         let tight = Attempt { name: "tight".to_owned(), config, memory_words: Some(7), looks: Vec::new() };

@@ -1,6 +1,6 @@
 //! Golden vectors: attempts recorded once, with what the localizer answered, for every machine to agree with.
 //!
-//! Files in `tests/fixtures/golden/`: a map of a few nodes of the generated office, the looks of some hundred
+//! Files in `tests/fixtures/golden/`: a map of a few nodes of the generated office, with an index, the looks of some hundred
 //! attempts in it ([`edgeloc_firmware::looks`]), and one line of text for each look with the decision and all scores.
 //! `joined.map` has the same nodes as the verifying localizer's preset learns them; instructions are counted on it.
 //! `kernels.txt` holds what the [kernels](edgeloc_firmware::run_kernels) make of drawn inputs. Boards hold all of these in

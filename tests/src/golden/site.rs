@@ -68,7 +68,8 @@ impl Site {
     pub(super) fn learn(&self) -> Vec<u8> {
         let views = NodeViews::observe_all(&self.rig, &self.world, &self.occluders, &self.nodes, VIEW_COUNT);
         let robot = CalibratedRig::exact(self.rig);
-        learning::learn(&robot, &views, &Sources::default(), SEED, 0).expect("an office fits the format")
+        let map = learning::learn(&robot, &views, &Sources::default(), SEED, 0).expect("an office fits the format");
+        learning::indexed(&map).expect("a map just learned")
     }
 
     /// The map of the nodes as the verifying localizer's preset has it learned: joined, and within its budget.
