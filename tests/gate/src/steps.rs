@@ -44,7 +44,7 @@ pub(crate) static STEPS: &[Step] = &[
     full("wasm", "the same in WebAssembly", wasm),
     Step {
         name: "miri",
-        about: "Miri finds nothing undefined in the kernels for SSE2 and AVX2 (needs a nightly toolchain)",
+        about: "Miri on the tests that hold the SSE2 and AVX2 bodies against each other (needs a nightly toolchain)",
         is_in_full: false,
         is_quick: false,
         run: miri,

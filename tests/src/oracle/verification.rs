@@ -1,7 +1,8 @@
 //! Geometric verification in `f64`: distances to segments instead of distance planes, functions instead of tables.
 //!
 //! Departures that remain, and that the tolerance of the comparison covers: the library measures chamfer distances
-//! between quarter-resolution pixels, rounds responses to 1/255 and lengths by an octagon.
+//! between quarter-resolution pixels, rounds responses to 1/255, wide ones by half a distance unit, and lengths by an octagon, and
+//! measures the background by every other row.
 
 use super::{NaiveSegment, predict};
 use edgeloc::geometry::{Point3, Segment3, StereoRig};

@@ -8,7 +8,7 @@ use super::frustum::Frustum;
 use super::image_frame::ImageFrame;
 use super::kept_looks::{KeptLooks, LookPose};
 use super::lanes::{LANES, Lane, MAX_POINTS, Tables, any};
-use super::responses::Responses;
+use super::responses::{Responses, WIDTHS};
 use super::seen_segment::SeenSegment;
 use super::view::{ViewSegment, turn_model};
 use crate::database::Node;
@@ -24,7 +24,7 @@ const FIXED_TOLERANCE_PX: f32 = 6.0;
 /// Error of the model itself \[m\].
 const MODEL_ERROR_M: f32 = 0.012;
 /// Weights of the four response widths: what is predicted loosely counts less.
-const WEIGHTS: [f32; 4] = [1.0, 0.8, 0.55, 0.3];
+const WEIGHTS: [f32; WIDTHS] = [1.0, 0.8, 0.55, 0.3];
 
 /// How exactly a hypothesis is posed, and how closely it is looked at.
 #[derive(Debug, Clone, Copy)]
@@ -183,6 +183,7 @@ impl<'m> Checker<'m> {
         closeness: &Closeness,
         found: &mut [Evidence],
     ) {
+        const { assert!(BATCH.is_multiple_of(N), "the lanes of a batch come in whole vectors") };
         let focal = self.frame.focal_px;
         let (position, model) = (focal * closeness.position_m, focal * MODEL_ERROR_M);
         let heading = focal * closeness.heading_rad;
@@ -203,9 +204,9 @@ impl<'m> Checker<'m> {
                 }
                 let image = self.project_in_lanes(segment, &cameras.offsets::<N>(first), &part);
                 if image.is_any_seen() {
-                    let [more_explained, more] = self.evidence_of_segment(body, &image, &tolerance, count);
+                    let [more_explained, more_total] = self.evidence_of_segment(body, &image, &tolerance, count);
                     add(&mut explained, first, &more_explained);
-                    add(&mut total, first, &more);
+                    add(&mut total, first, &more_total);
                 }
             }
         }
@@ -241,7 +242,7 @@ impl<'m> Checker<'m> {
         let mut place = [0_u32; N];
         let mut weight_px = [0.0; N];
         for lane in 0..N {
-            place[lane] = 4 * channel[lane] + width[lane];
+            place[lane] = WIDTHS as u32 * channel[lane] + width[lane];
             weight_px[lane] = image.seen_px[lane] * WEIGHTS[width[lane] as usize & 3];
         }
         let background = body.bytes_at(self.responses.backgrounds(), &place);
@@ -400,9 +401,9 @@ const POINT_SHARES: [f32; MAX_POINTS + 1] = {
     shares
 };
 
-/// A length in units of 1/255 px in Q4 px.
-fn in_q4(length: f32) -> i32 {
-    math::round_to_i32(length * (16.0 / 255.0))
+/// A length in 1/255 px as one in Q4 px.
+fn in_q4(length_per_255: f32) -> i32 {
+    math::round_to_i32(length_per_255 * (16.0 / 255.0))
 }
 
 /// Adds `more` to as many of `sums` from the `first` on.

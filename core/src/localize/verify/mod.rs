@@ -9,8 +9,9 @@
 //! decide ([`stop_rule`]). Until they do, the robot looks where its rivals are predicted to look different, and when it has
 //! looked all around it moves a little ([`next_look`]). Least squares give the metric pose ([`pose_fit`]).
 //!
-//! Sums are integers. Projection is plain IEEE single precision in source order, without a function that machines
-//! round differently.
+//! Responses and looks add up as integers, the evidence of a pose over a look's segments in single precision, segment by
+//! segment. All of that, and projection, is plain IEEE arithmetic in source order, without a function that machines round
+//! differently.
 
 mod cameras;
 mod chamfer;

@@ -239,9 +239,9 @@ fn measure(checker: &Checker<'_>, model: &Projected, seen: &[SeenSegment], gate_
     let frame = checker.frame();
     let (sin, cos) = checker.heading_sin_cos();
     let (mut slope, mut distance, mut inverse_sum, mut count) = ([0.0_f32; 3], 0.0_f32, 0.0_f32, 0.0_f32);
-    let along = [0.17_f32, 0.5, 0.83];
-    let points = along.map(|t| [model.start_px[0] + dx * t, model.start_px[1] + dy * t]);
-    for ((t, point), partner) in along.into_iter().zip(points).zip(nearest(points, direction, seen, gate_px)) {
+    let shares = [0.17_f32, 0.5, 0.83];
+    let points = shares.map(|t| [model.start_px[0] + dx * t, model.start_px[1] + dy * t]);
+    for ((t, point), partner) in shares.into_iter().zip(points).zip(nearest(points, direction, seen, gate_px)) {
         let Some((away, normal)) = partner else { continue };
         let inverse = model.inverse_depth[0] + (model.inverse_depth[1] - model.inverse_depth[0]) * t;
         let focal = frame.focal_px;
@@ -273,14 +273,14 @@ fn focal_error_px(focal_px: f32, inverse_depth: f32) -> f32 {
     focal_px * MODEL_M * inverse_depth
 }
 
-/// Signed distance of each of the `points` to the nearest seen segment alike in direction, with that segment's normal.
+/// Signed distance \[px\] of each of the `points` to the nearest seen segment alike in direction, with that segment's normal.
 fn nearest<const POINTS: usize>(
     points: [[f32; 2]; POINTS],
     direction: [f32; 2],
     seen: &[SeenSegment],
     gate_px: f32,
 ) -> [Option<(f32, [f32; 2])>; POINTS] {
-    let mut best = [None::<(f32, [f32; 2])>; POINTS];
+    let mut partners = [None::<(f32, [f32; 2])>; POINTS];
     for segment in seen {
         let (dx, dy) = segment.direction_q4();
         let (dx, dy) = (dx as f32 * 0.0625, dy as f32 * 0.0625);
@@ -291,7 +291,7 @@ fn nearest<const POINTS: usize>(
             continue;
         }
         let start = segment.start_q4.map(|q4| f32::from(q4) * 0.0625);
-        for (best, point) in best.iter_mut().zip(points) {
+        for (best, point) in partners.iter_mut().zip(points) {
             let (px, py) = (point[0] - start[0], point[1] - start[1]);
             let along = px * dx + py * dy;
             let across = dx * py - dy * px;
@@ -305,7 +305,7 @@ fn nearest<const POINTS: usize>(
             }
         }
     }
-    best
+    partners
 }
 
 #[cfg(test)]

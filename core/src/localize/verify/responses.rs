@@ -10,8 +10,10 @@ pub(super) const WIDTHS: usize = 4;
 const LEAST_WIDTH_PX: f32 = 7.0;
 /// Steps of the table to a unit of distance, at the least width.
 const STEPS_PER_UNIT: u32 = 4;
-/// The step that nothing responds to.
+/// The step that nothing responds to: the table's last.
 const OUT_OF_REACH: u32 = 127;
+/// Side of a pixel of the planes \[px\].
+const PLANE_PIXEL_PX: f32 = 4.0;
 
 /// A byte for each step, in fours.
 pub(super) type ResponseTable = [[u8; 4]; 32];
@@ -24,10 +26,11 @@ pub(super) struct Responses {
     background: [[u8; WIDTHS]; CHANNELS],
 }
 
-/// The step of the table for a distance of a plane, at one of the [`WIDTHS`].
+/// The step of the table for a distance of a plane, at one of the [`WIDTHS`]; rounded down, by less than 0.8 px and only at
+/// the widest. The greatest distance, which means none or out of reach, is [`OUT_OF_REACH`] at every width.
 #[inline(always)]
 pub(super) fn step_of(distance: u32, width: u32) -> u32 {
-    // The greatest distance, which means none or out of reach, responds to no width.
+    const { assert!((u8::MAX as u32 * STEPS_PER_UNIT) >> (WIDTHS - 1) >= OUT_OF_REACH) }
     ((distance * STEPS_PER_UNIT) >> width).min(OUT_OF_REACH)
 }
 
@@ -35,7 +38,7 @@ impl Responses {
     pub(super) fn new() -> Self {
         let mut table = ResponseTable::default();
         for (step, response) in table.as_flattened_mut().iter_mut().enumerate().take(OUT_OF_REACH as usize) {
-            let px_per_step = 4.0 / (UNITS_PER_PIXEL as f32 * STEPS_PER_UNIT as f32);
+            let px_per_step = PLANE_PIXEL_PX / (UNITS_PER_PIXEL as f32 * STEPS_PER_UNIT as f32);
             let distances = step as f32 * px_per_step / LEAST_WIDTH_PX;
             *response = math::round(255.0 * math::exp(-0.5 * distances * distances)) as u8;
         }
@@ -68,5 +71,24 @@ impl Responses {
     /// The background of each channel and width.
     pub(super) const fn backgrounds(&self) -> &[[u8; WIDTHS]; CHANNELS] {
         &self.background
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_distance_has_the_response_of_its_width() {
+        let responses = Responses::new();
+        for (width, width_px) in [7.0, 14.0, 28.0, 56.0].into_iter().enumerate() {
+            for distance in 0..=u32::from(u8::MAX) {
+                let found = responses.table().as_flattened()[step_of(distance, width as u32) as usize];
+                let distance_px = f64::from(distance) * 0.8;
+                let exact =
+                    if distance == 255 { 0.0 } else { 255.0 * libm::exp(-0.5 * (distance_px / width_px).powi(2)) };
+                assert!((f64::from(found) - exact).abs() <= 3.0, "{distance} at {width_px} px: {found} for {exact}");
+            }
+        }
     }
 }

@@ -1,4 +1,5 @@
-//! The inner loop of matching, one sparse row against one panel, and which instructions the work around it may use.
+//! The inner loop of matching, one sparse row against one panel, look-ups in tables, and which instructions the work around
+//! them may use.
 //!
 //! Several bodies, the same bits: integer sums do not depend on their order, and what is not written by hand is the same
 //! portable source compiled once for each set of instructions.
@@ -28,7 +29,7 @@ pub const LANES: usize = 16;
 /// should lie in one.
 pub(crate) const SKIPS_EMPTY_BINS: bool = cfg!(edgeloc_body = "smlad");
 
-/// A way to compute coefficients.
+/// A way to compute coefficients and to look bytes up.
 pub(crate) trait Body: Copy {
     /// What it is called.
     const NAME: &'static str;
@@ -54,7 +55,7 @@ pub(crate) trait Body: Copy {
     #[inline(always)]
     fn will_read(self, _: &PanelRow) {}
 
-    /// The bytes of `table` at `places`; 0 beyond its end.
+    /// The bytes of `table` at `places`, as many as a panel has lanes at most; 0 beyond its end.
     #[inline(always)]
     fn bytes_at<const N: usize>(self, table: &[[u8; 4]], places: &[u32; N]) -> [u32; N] {
         let bytes = table.as_flattened();
@@ -65,7 +66,7 @@ pub(crate) trait Body: Copy {
         found
     }
 
-    /// The same of so few bytes that vectors may hold them; of higher places only the low bits count.
+    /// The bytes of a table of 128 at `places`, of which the low seven bits count; so few that vectors may hold them.
     #[inline(always)]
     fn bytes_of_few<const N: usize>(self, table: &[[u8; 4]; 32], places: &[u32; N]) -> [u32; N] {
         places.map(|place| u32::from(table.as_flattened()[place as usize % 128]))
@@ -96,7 +97,7 @@ pub(crate) trait Work {
     /// What comes of it.
     type Output;
 
-    /// Does it, with coefficients from `body`.
+    /// Does it, with what `body` has for it.
     fn run<B: Body>(self, body: B) -> Self::Output;
 }
 

@@ -1,4 +1,5 @@
-//! AVX-512 VNNI: one multiply-and-accumulate-pairs for a whole panel, four pairs of bins under way at a time.
+//! AVX-512 VNNI: one multiply-and-accumulate-pairs for a whole panel, four pairs of bins under way at a time; bytes of tables
+//! by gathers, or from registers.
 
 use super::{detection, prefetch};
 use crate::matching::kernels::{Body, LANES, as_far_as_all_go, rows_at};
@@ -65,25 +66,31 @@ fn in_all_lanes<const N: usize>(numbers: &[u32; N], work: impl FnOnce(__m512i) -
     core::array::from_fn(|lane| lanes[lane])
 }
 
-/// Four bytes are read for each place, and those that were not asked for are dropped.
+/// Four bytes are read for each place, and all but the one that was asked for are dropped.
 #[inline]
 #[target_feature(enable = "avx512f")]
 fn bytes_at(table: &[[u8; 4]], places: __m512i) -> __m512i {
     let quads = _mm512_srli_epi32::<2>(places);
-    let within = _mm512_cmplt_epu32_mask(quads, _mm512_set1_epi32(table.len() as i32));
-    let bits = _mm512_slli_epi32::<3>(_mm512_and_si512(places, _mm512_set1_epi32(3)));
-    // SAFETY: only the quads within the table are read; indices of four bytes each are signed, and a table of more than
-    // `i32::MAX` quads has a length that is cut to its low bits, none of which then counts above it.
+    let within = _mm512_cmplt_epu32_mask(quads, _mm512_set1_epi32(table.len().min(1 << 30) as i32));
+    // SAFETY: the index of a quad is below 2^30, so not negative as a signed one, and only those below the table's length are
+    // read; a gather needs no alignment, and of lanes that are masked out it reads nothing.
     let four =
         unsafe { _mm512_mask_i32gather_epi32::<4>(_mm512_setzero_si512(), within, quads, table.as_ptr().cast()) };
-    _mm512_and_si512(_mm512_srlv_epi32(four, bits), _mm512_set1_epi32(0xff))
+    byte_of(four, places)
 }
 
+/// The table lies in two vectors.
 #[inline]
 #[target_feature(enable = "avx512f")]
 fn bytes_of_few(table: &[[u8; 4]; 32], places: __m512i) -> __m512i {
     let [low, high]: [__m512i; 2] = zerocopy::transmute!(*table);
-    let four = _mm512_permutex2var_epi32(low, _mm512_srli_epi32::<2>(places), high);
+    byte_of(_mm512_permutex2var_epi32(low, _mm512_srli_epi32::<2>(places), high), places)
+}
+
+/// Of the four bytes from which each place was read, the one at it.
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn byte_of(four: __m512i, places: __m512i) -> __m512i {
     let bits = _mm512_slli_epi32::<3>(_mm512_and_si512(places, _mm512_set1_epi32(3)));
     _mm512_and_si512(_mm512_srlv_epi32(four, bits), _mm512_set1_epi32(0xff))
 }

@@ -41,7 +41,14 @@ fn found() -> u8 {
 /// Miri has no processor to be asked, only what it was told when it compiled this; AVX-512 it does not know.
 #[cfg(miri)]
 fn ask() -> u8 {
-    KNOWN | if cfg!(target_feature = "avx2") { AVX2 } else { 0 }
+    let has_all = cfg!(all(
+        target_feature = "avx2",
+        target_feature = "bmi1",
+        target_feature = "bmi2",
+        target_feature = "lzcnt",
+        target_feature = "popcnt"
+    ));
+    KNOWN | if has_all { AVX2 } else { 0 }
 }
 
 #[cfg(not(miri))]
