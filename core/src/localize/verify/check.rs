@@ -1,12 +1,13 @@
 //! One hypothesis against one look: what the model predicts is looked up in the distance planes.
 
 use super::Evidence;
-use super::cameras::{BATCH, Cameras, SeenPart};
+use super::cameras::{BATCH, Cameras};
 use super::channel::channel_in_lane;
 use super::distance_planes::DistancePlanes;
 use super::frustum::Frustum;
 use super::image_frame::ImageFrame;
 use super::kept_looks::{KeptLooks, LookPose};
+use super::lane_image::LaneImage;
 use super::lanes::{LANES, Lane, MAX_POINTS, Tables, any};
 use super::responses::{Responses, WIDTHS};
 use super::seen_segment::SeenSegment;
@@ -202,7 +203,8 @@ impl<'m> Checker<'m> {
                 if !any(&part.is_any()) {
                     continue;
                 }
-                let image = self.project_in_lanes(segment, &cameras.offsets::<N>(first), &part);
+                let segment = (segment.start, segment.end);
+                let image = LaneImage::of(segment, &cameras.offsets::<N>(first), &part, (&self.frame, &self.filter));
                 if image.is_any_seen() {
                     let [more_explained, more_total] = self.evidence_of_segment(body, &image, &tolerance, count);
                     add(&mut explained, first, &more_explained);
@@ -255,40 +257,6 @@ impl<'m> Checker<'m> {
             total[lane] = weight_px[lane] * (255.0 - background);
         }
         [explained, total]
-    }
-
-    /// Images of the seen parts of a model segment for cameras at `offsets` (right, forward).
-    #[inline(always)]
-    fn project_in_lanes<const N: usize>(
-        &self,
-        segment: &ViewSegment,
-        [right, forward]: &[Lane<f32, N>; 2],
-        part: &SeenPart<N>,
-    ) -> LaneImage<N> {
-        let (frame, filter) = (&self.frame, &self.filter);
-        let ([start_x, start_y, start_z], [end_x, end_y, end_z]) = (segment.start, segment.end);
-        let mut image = LaneImage::EMPTY;
-        for lane in 0..N {
-            let (x, z) = (start_x - right[lane], start_z - forward[lane]);
-            let (way_x, way_y, way_z) = ((end_x - right[lane]) - x, end_y - start_y, (end_z - forward[lane]) - z);
-            let (from, to) = (part.enter[lane], part.leave[lane]);
-            let start_inverse = 1.0 / (z + way_z * from);
-            let end_inverse = 1.0 / (z + way_z * to);
-            let (start_scale, end_scale) = (frame.focal_px * start_inverse, frame.focal_px * end_inverse);
-            let image_start = [(x + way_x * from) * start_scale, (start_y + way_y * from) * start_scale];
-            let image_end = [(x + way_x * to) * end_scale, (start_y + way_y * to) * end_scale];
-            for axis in 0..2 {
-                image.start[axis][lane] = frame.center_px[axis] + image_start[axis];
-                image.way[axis][lane] = image_end[axis] - image_start[axis];
-            }
-            let (width, height) = (magnitude(image.way[0][lane]), magnitude(image.way[1][lane]));
-            let length_px = octagonal_length(width, height);
-            let is_seen =
-                (from < to) & (length_px >= filter.min_length_px) & (height >= filter.horizontal_slope * width);
-            image.seen_px[lane] = if is_seen { length_px } else { 0.0 };
-            image.inverse_depth[lane] = 0.5 * (start_inverse + end_inverse);
-        }
-        image
     }
 
     /// Image of a model segment for a camera at `offset_m` (right, forward), cut at the near limit and the border.
@@ -370,26 +338,6 @@ impl Work for Batch<'_, '_> {
     }
 }
 
-/// Images of one model segment.
-#[derive(Debug)]
-struct LaneImage<const N: usize> {
-    start: [Lane<f32, N>; 2],
-    way: [Lane<f32, N>; 2],
-    /// Length where the segment is in view, long enough and not near-horizontal, else 0.
-    seen_px: Lane<f32, N>,
-    inverse_depth: Lane<f32, N>,
-}
-
-impl<const N: usize> LaneImage<N> {
-    const EMPTY: Self = Self { start: [[0.0; N]; 2], way: [[0.0; N]; 2], seen_px: [0.0; N], inverse_depth: [0.0; N] };
-
-    /// Whether the segment is seen in any lane.
-    #[inline(always)]
-    fn is_any_seen(&self) -> bool {
-        self.seen_px.iter().fold(false, |any, length_px| any | (*length_px > 0.0))
-    }
-}
-
 /// `1 / count`.
 const POINT_SHARES: [f32; MAX_POINTS + 1] = {
     let mut shares = [0.0; MAX_POINTS + 1];
@@ -415,22 +363,8 @@ fn add<const N: usize>(sums: &mut [f32; BATCH], first: usize, more: &Lane<f32, N
     }
 }
 
-/// Magnitude of a number, without a call.
-#[inline(always)]
-fn magnitude(x: f32) -> f32 {
-    if x < 0.0 { -x } else { x }
-}
-
 /// The point where the way from `behind` to `before` comes into view.
 fn cut_near(behind: [f32; 3], before: [f32; 3], near_m: f32) -> [f32; 3] {
     let t = (near_m - behind[2]) / (before[2] - behind[2]);
     [behind[0] + (before[0] - behind[0]) * t, behind[1] + (before[1] - behind[1]) * t, near_m]
-}
-
-/// Length of a vector by its sides' magnitudes, within 1.3 %: no square root.
-#[inline(always)]
-fn octagonal_length(width: f32, height: f32) -> f32 {
-    let (long, short) = if width > height { (width, height) } else { (height, width) };
-    let (flat, steep) = (0.99 * long + 0.197 * short, 0.84 * long + 0.561 * short);
-    if steep > flat { steep } else { flat }
 }

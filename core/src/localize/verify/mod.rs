@@ -28,6 +28,7 @@ mod hypothesis;
 mod image_frame;
 mod judgement;
 mod kept_looks;
+mod lane_image;
 mod lanes;
 mod memory;
 mod models;
