@@ -72,10 +72,10 @@ fn in_all_lanes<const N: usize>(numbers: &[u32; N], work: impl FnOnce(__m512i) -
 fn bytes_at(table: &[[u8; 4]], places: __m512i) -> __m512i {
     let quads = _mm512_srli_epi32::<2>(places);
     let within = _mm512_cmplt_epu32_mask(quads, _mm512_set1_epi32(table.len().min(1 << 30) as i32));
-    // SAFETY: the index of a quad is below 2^30, so not negative as a signed one, and only those below the table's length are
-    // read; a gather needs no alignment, and of lanes that are masked out it reads nothing.
-    let four =
-        unsafe { _mm512_mask_i32gather_epi32::<4>(_mm512_setzero_si512(), within, quads, table.as_ptr().cast()) };
+    let (none, bytes) = (_mm512_setzero_si512(), table.as_ptr().cast());
+    // SAFETY: the index of a quad is below 2^30, so not negative as a signed one, and only those below the table's length
+    // are read; a gather needs no alignment, and of lanes that are masked out it reads nothing.
+    let four = unsafe { _mm512_mask_i32gather_epi32::<4>(none, within, quads, bytes) };
     byte_of(four, places)
 }
 
