@@ -20,7 +20,8 @@ const BUILDINGS_OF_ROBOTS: u32 = 14;
 ///
 /// A campus of generated offices is learned building by building, and mapped at each size. The same robots, with the same
 /// looks, are put down anywhere in its first 14 buildings (a map of fewer has robots of its own), with the sources of the
-/// scenario `edgeloc`. Times are of one thread. What was learned before is kept in the folder: run again to go on.
+/// scenario `edgeloc`. Times are of one thread. What was learned before is kept in the folder; measurements
+/// start anew and take the place of earlier ones.
 #[derive(Debug, Args)]
 #[command(after_help = format!("Examples:\n  edgeloc scale --nodes 72,1000\n  edgeloc scale --nodes 72,1000,10000,100000 --trials 300\n  \
                         edgeloc scale --nodes 10000 --shortlist 100 --exact 10000\n\n\
@@ -159,6 +160,8 @@ fn table(lines: &[ScaleLine]) -> String {
     ]);
     for line in lines {
         let ([first, last], [exact, kept]) = (line.shortlisted(), line.exact());
+        let has_first_stage = line.scored_nodes < line.nodes;
+        let of_first_stage = |what: String| if has_first_stage { what } else { "every node is scored".to_owned() };
         table.add_row([
             line.nodes.to_string(),
             line.scored_nodes.to_string(),
@@ -167,8 +170,8 @@ fn table(lines: &[ScaleLine]) -> String {
             format!("{:.2}", line.mean_looks),
             format!("{:.1} / {:.1} ms", line.first_look_ms_min, line.first_look_ms_median),
             format!("{:.1} ms", line.later_look_ms_median),
-            format!("{:.2} / {:.2} ms", line.first_stage_ms_min, line.first_stage_ms_median),
-            format!("{first} / {last}"),
+            of_first_stage(format!("{:.2} / {:.2} ms", line.first_stage_ms_min, line.first_stage_ms_median)),
+            of_first_stage(format!("{first} / {last}")),
             format!("{exact} / {kept}"),
             format!("{:.1} MB, {:.2} MB", line.map_bytes as f64 / 1e6, line.memory_bytes as f64 / 1e6),
         ]);
