@@ -137,11 +137,11 @@ pub fn poses() -> Vec<PoseWorkload> {
         expected_evidence_q4,
     };
     vec![
-        workload("empty", Vec::new(), (0, 2_192_296)),
-        workload("bare_wall", seen_from(BESIDE, 3), (70_459, 2_141_568)),
-        workload("typical", seen_from(BESIDE, 112), (593_105, 1_493_408)),
-        workload("crowded", seen_from(BESIDE, 240), (690_893, 1_187_596)),
-        workload("all_crossing", crossing(150), (75_534, 577_419)),
+        workload("empty", Vec::new(), (0, 2_199_123)),
+        workload("bare_wall", seen_from(BESIDE, 3), (71_340, 2_148_135)),
+        workload("typical", seen_from(BESIDE, 112), (599_044, 1_498_055)),
+        workload("crowded", seen_from(BESIDE, 240), (697_198, 1_191_475)),
+        workload("all_crossing", crossing(150), (79_729, 579_228)),
     ]
 }
 
