@@ -179,7 +179,7 @@ fn wasm(workspace: &Workspace) -> Outcome {
     run_board(workspace, WASM_BOARD, setup::WASM_ENGINE)
 }
 
-/// Interprets the tests that hold the bodies against each other, on a few drawn inputs; that of whole histograms would take
+/// Interprets the tests that hold the bodies against each other, on one drawn input each; that of whole histograms would take
 /// minutes. The square root is not to be assembly there.
 fn miri(workspace: &Workspace) -> Outcome {
     let nightly = |arguments: &str| {

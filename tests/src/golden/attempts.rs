@@ -158,10 +158,8 @@ impl List<'_> {
     /// The verifying localiser: with compass and odometry of all kinds, near and anywhere, moving, and where nothing is.
     fn verified(&mut self) {
         let whole = LocalizerConfig::edgeloc();
-        // Fewer poses, so that an emulated board is through in time.
         let with = |change: fn(&mut VerificationConfig)| {
-            let mut verification =
-                VerificationConfig { cells_per_side: 3, refined: 6, finalists: 3, ..VerificationConfig::reference() };
+            let mut verification = few_poses();
             change(&mut verification);
             LocalizerConfig { verification: Some(verification), ..whole }
         };
@@ -205,8 +203,7 @@ impl List<'_> {
         self.look_around("4 of the nodes, near".to_owned(), paper, Start::Near, 3, &Sources::default());
         self.look_around("4 of the nodes, anywhere".to_owned(), paper, Start::Anywhere, 3, &Sources::default());
 
-        let few = VerificationConfig { cells_per_side: 3, refined: 6, finalists: 3, ..VerificationConfig::reference() };
-        let verified = LocalizerConfig { shortlist: 3, verification: Some(few), ..LocalizerConfig::edgeloc() };
+        let verified = LocalizerConfig { shortlist: 3, verification: Some(few_poses()), ..LocalizerConfig::edgeloc() };
         let looks = self.moving_looks(Start::Anywhere, 3);
         self.push("verified, 3 of the nodes".to_owned(), verified, looks);
         let mut looks = self.moving_looks(Start::Near, 3);
@@ -245,6 +242,11 @@ impl List<'_> {
 fn with_polarity() -> LocalizerConfig {
     let shape = PghShape { uses_polarity: true, ..PghShape::paper() };
     LocalizerConfig { shape, ..LocalizerConfig::paper() }
+}
+
+/// Fewer poses than the reference has, so that an emulated board is through in time.
+fn few_poses() -> VerificationConfig {
+    VerificationConfig { cells_per_side: 3, refined: 6, finalists: 3, ..VerificationConfig::reference() }
 }
 
 /// No source, each of the paper's alone, all of them, and those that are off by default together.

@@ -177,9 +177,9 @@ impl<'m> Checker<'m> {
 
     /// Evidence for as many cameras as there are places in `found`, `N` at a time.
     #[inline(always)]
-    fn evidence_in_lanes<const N: usize, B: Body>(
+    fn evidence_in_lanes<const N: usize>(
         &self,
-        body: B,
+        body: impl Body,
         cameras: &Cameras,
         closeness: &Closeness,
         found: &mut [Evidence],
@@ -329,11 +329,11 @@ impl Work for Batch<'_, '_> {
         const HALF: usize = LANES.div_ceil(2);
         let Self { checker, cameras, closeness, found } = self;
         if found.len() == 1 {
-            checker.evidence_in_lanes::<1, B>(body, cameras, closeness, found);
+            checker.evidence_in_lanes::<1>(body, cameras, closeness, found);
         } else if found.len() <= HALF {
-            checker.evidence_in_lanes::<HALF, B>(body, cameras, closeness, found);
+            checker.evidence_in_lanes::<HALF>(body, cameras, closeness, found);
         } else {
-            checker.evidence_in_lanes::<LANES, B>(body, cameras, closeness, found);
+            checker.evidence_in_lanes::<LANES>(body, cameras, closeness, found);
         }
     }
 }

@@ -85,7 +85,7 @@ impl Tables<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::matching::{Body, Work, run};
+    use crate::matching::{Work, run};
     use std::vec;
 
     /// The sum of the responses at one point of the first channel.
