@@ -40,13 +40,13 @@ pub fn score_view(
 }
 
 /// [`score_view`] as work for any machine.
-struct Score<'a, 'r, 'b, 'p> {
-    scene_lines: &'a [Line],
-    scene_rows: &'a RootRows<'r>,
-    view_lines: &'a [Line],
-    builder: &'a mut HistogramBuilder<'b>,
-    panel: &'a mut Panel<'p>,
-    best: &'a mut [i32],
+pub(super) struct Score<'a, 'r, 'b, 'p> {
+    pub(super) scene_lines: &'a [Line],
+    pub(super) scene_rows: &'a RootRows<'r>,
+    pub(super) view_lines: &'a [Line],
+    pub(super) builder: &'a mut HistogramBuilder<'b>,
+    pub(super) panel: &'a mut Panel<'p>,
+    pub(super) best: &'a mut [i32],
 }
 
 impl Work for Score<'_, '_, '_, '_> {

@@ -3,7 +3,7 @@
 
 #![allow(unsafe_code, reason = "an instruction without an intrinsic, at one of the addresses where unsafe may live")]
 
-use super::filled_bins::FilledBins;
+use super::envelope::{Envelopes, RootWords};
 use super::{Body, LANES};
 use crate::matching::{BinPair, PanelRow};
 use core::arch::asm;
@@ -24,10 +24,35 @@ impl Body for Smlad {
     }
 
     fn raise_best<'a>(self, rows: impl Iterator<Item = &'a [BinPair]>, panel: &[PanelRow], best: &mut [i32]) {
-        let mut filled = FilledBins::of(panel);
+        let mut envelopes = Envelopes::of(panel, self);
         for (row, best) in rows.zip(best) {
-            *best = (*best).max(self.best_coefficient(filled.meeting(row), panel));
+            envelopes.raise_best(self, row, best, |half, row| match half {
+                0 => best_of_half::<0>(row, panel),
+                _ => best_of_half::<HALF>(row, panel),
+            });
         }
+    }
+}
+
+impl RootWords for Smlad {
+    #[inline(always)]
+    fn greater(self, a: u32, b: u32) -> u32 {
+        let more: u32;
+        // SAFETY: a subtraction within registers.
+        unsafe {
+            asm!("uqsub16 {}, {}, {}", lateout(reg) more, in(reg) a, in(reg) b, options(pure, nomem, nostack));
+        }
+        b.wrapping_add(more)
+    }
+
+    #[inline(always)]
+    fn plus_products(self, sum: u32, a: u32, b: u32) -> u32 {
+        let more: u32;
+        // SAFETY: multiplications and additions within registers.
+        unsafe {
+            asm!("smlad {}, {}, {}, {}", lateout(reg) more, in(reg) a, in(reg) b, in(reg) sum, options(pure, nomem, nostack));
+        }
+        more
     }
 }
 

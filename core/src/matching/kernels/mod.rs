@@ -8,7 +8,7 @@
 mod cortex_m;
 mod distance_steps;
 #[cfg(any(test, edgeloc_body = "smlad"))]
-mod filled_bins;
+mod envelope;
 #[cfg(edgeloc_body = "neon")]
 mod neon;
 #[cfg(any(test, edgeloc_body = "portable"))]
