@@ -4,17 +4,19 @@ use super::Line;
 
 /// Keeps the longest of the lines offered, as many as the caller's slice holds; equal lengths: the first offered.
 ///
-/// A binary heap with the line to be replaced next on top, so that any number of lines may be offered.
+/// Any number of lines may be offered: as soon as one is more than there is room for, they become a binary heap with the
+/// line to be replaced next on top.
 #[derive(Debug)]
 pub struct LongestLines<'m> {
     storage: &'m mut [Line],
     count: usize,
+    is_heap: bool,
 }
 
 impl<'m> LongestLines<'m> {
     /// No lines yet, room for as many as `storage` holds.
     pub fn new(storage: &'m mut [Line]) -> Self {
-        Self { storage, count: 0 }
+        Self { storage, count: 0, is_heap: false }
     }
 
     /// Keeps `line` if there is room or it is longer than the shortest kept.
@@ -22,33 +24,26 @@ impl<'m> LongestLines<'m> {
         if self.count < self.storage.len() {
             self.storage[self.count] = line;
             self.count += 1;
-            self.sift_up(self.count - 1);
-        } else if self.count > 0 && goes_before(&self.storage[0], &line) {
+            return;
+        }
+        if !self.is_heap {
+            (0..self.count / 2).rev().for_each(|parent| self.sift_down(parent));
+            self.is_heap = true;
+        }
+        if self.storage.first().is_some_and(|first| goes_before(first, &line)) {
             self.storage[0] = line;
-            self.sift_down();
+            self.sift_down(0);
         }
     }
 
     /// The lines kept, in no particular but a reproducible order.
     #[must_use]
     pub fn into_lines(self) -> &'m mut [Line] {
-        let Self { storage, count } = self;
+        let Self { storage, count, .. } = self;
         &mut storage[..count]
     }
 
-    fn sift_up(&mut self, mut child: usize) {
-        while child > 0 {
-            let parent = (child - 1) / 2;
-            if !goes_before(&self.storage[child], &self.storage[parent]) {
-                return;
-            }
-            self.storage.swap(child, parent);
-            child = parent;
-        }
-    }
-
-    fn sift_down(&mut self) {
-        let mut parent = 0;
+    fn sift_down(&mut self, mut parent: usize) {
         loop {
             let (left, right) = (2 * parent + 1, 2 * parent + 2);
             let mut first = parent;
