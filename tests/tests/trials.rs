@@ -12,6 +12,7 @@ use edgeloc_sim::world::office::{self, OfficeOptions};
 use std::fmt::Write as _;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
 
 /// A small scenario in the generated office: 16 nodes, 12 trials of four rows over 3 maps.
 fn small_scenario() -> Scenario {
@@ -130,10 +131,17 @@ fn rows_that_share_their_work_give_what_each_gives_alone() {
         row("wider").with("near_radius_m", 1.0),
         Row { trials: Some(9), ..Row::new("anywhere", Start::Anywhere, false) },
         Row::new("anywhere, nodes", Start::Anywhere, true).with("learning.nodes", 9),
+        row("plain again").with("localizer.turn_deg", 30.0),
     ];
     let sites = office_sites(&scenario);
     assert_eq!(sites.all().len(), 2);
-    let together = run_on(3, &sites).records;
+    let RunOutcome { records: together, look_times } = run_on(3, &sites);
+    // Rows with the same parameters are one run of the localiser, times and all.
+    let times = |row: &str| -> Vec<&Vec<Duration>> {
+        together.iter().zip(&look_times).filter(|(record, _)| record.row == row).map(|(_, times)| times).collect()
+    };
+    assert_eq!(times("plain again"), times("plain"));
+    assert_ne!(times("margin"), times("plain"));
     for setting in sites.settings() {
         let alone = run_on(1, &office_sites(&setting.scenario)).records;
         let of_row = together.iter().filter(|record| record.row == setting.row.name).cloned().collect::<Vec<_>>();

@@ -2,7 +2,8 @@
 //!
 //! Rows are settings on common random numbers, so what several of them need is worked out once: a site for each way of
 //! learning, a map for each site, sources and draw of noise, a pose for each kind of start, what is visible from it, the
-//! clean images, and the scene through each set of sources. A row gives the same records as it does alone.
+//! clean images, the scene through each set of sources, and of rows that differ in name alone the whole trial. A row gives
+//! the same records as it does alone.
 //!
 //! Trials go map by map, so that never more than a few maps of each kind are in memory.
 
@@ -125,19 +126,28 @@ fn run_block(sites: &Sites, part: &Part<'_>, map: u32, on_trial: &(dyn Fn(TimedT
         rows.iter().for_each(|&row| maps[row] = Some(opened));
     }
 
+    let parameters: Vec<_> = settings.iter().map(Setting::parameters).collect();
     let run_rows = |memory: &mut Vec<u64>, (trial, rows): &(u32, Vec<usize>)| {
         let Some(&any) = rows.first() else { return };
         let (site, Setting { row, scenario }) = (sites.of_row(any), &settings[any]);
         let start = draw_start(site, scenario, row.start, *trial);
         let mut looks = Looks::new(site, scenario.seed, *trial, map);
+        let mut ended: Vec<TimedTrial> = Vec::new();
         for &row in rows {
-            // A map is missing only when the run was told to stop before it was learned.
-            let Some((database, map_bytes)) = maps[row].filter(|_| !(part.should_stop)()) else { return };
-            let mut look_times = Vec::new();
-            let trial =
-                Trial { site: sites.of_row(row), setting: &settings[row], trial: *trial, map, map_bytes, start };
-            let record = trial.run(database, memory, &mut looks, |look| look_times.push(look.localizer_time));
-            on_trial(TimedTrial { row, record, look_times });
+            let timed = if let Some(twin) = ended.iter().find(|other| parameters[other.row] == parameters[row]) {
+                let record = TrialRecord { row: settings[row].row.name.clone(), ..twin.record.clone() };
+                TimedTrial { row, record, look_times: twin.look_times.clone() }
+            } else {
+                // A map is missing only when the run was told to stop before it was learned.
+                let Some((database, map_bytes)) = maps[row].filter(|_| !(part.should_stop)()) else { return };
+                let mut look_times = Vec::new();
+                let trial =
+                    Trial { site: sites.of_row(row), setting: &settings[row], trial: *trial, map, map_bytes, start };
+                let record = trial.run(database, memory, &mut looks, |look| look_times.push(look.localizer_time));
+                TimedTrial { row, record, look_times }
+            };
+            ended.push(timed.clone());
+            on_trial(timed);
         }
     };
     let needed = |row: usize| maps[row].map_or(0, |(map, _)| memory_len(&settings[row], &map));
