@@ -28,12 +28,15 @@ mod sources;
 mod summary_table;
 mod trials;
 mod validate;
+mod vectors;
 mod world;
 mod worlds;
 
 use clap::{Parser, Subcommand};
+use miette::Result;
 use std::process::ExitCode;
 use tracing_subscriber::EnvFilter;
+use vectors::Vectors;
 
 /// Global localisation of a robot from straight stereo edges: worlds, maps, kidnapped-robot trials and their reports.
 #[derive(Debug, Parser)]
@@ -44,6 +47,9 @@ struct Arguments {
     /// Log to standard error what is done (-v) and in detail (-vv).
     #[arg(short, long, global = true, action = clap::ArgAction::Count)]
     verbose: u8,
+    /// Use no wider vector instructions than these: the results are the same bits, later.
+    #[arg(long, global = true, value_name = "SET")]
+    vectors: Option<Vectors>,
 }
 
 const EXAMPLES: &str = "\
@@ -82,11 +88,29 @@ enum Verb {
     Scale(scale::Scale),
 }
 
+impl Default for Verb {
+    fn default() -> Self {
+        Self::Demo(demo::Demo::default())
+    }
+}
+
 /// Reads the command line and does what it asks.
 pub(crate) fn main() -> ExitCode {
     let arguments = Arguments::parse();
     start_log(arguments.verbose);
-    let done = match arguments.verb.unwrap_or(Verb::Demo(demo::Demo::default())) {
+    let done =
+        arguments.vectors.map_or(Ok(()), Vectors::set).and_then(|()| execute(arguments.verb.unwrap_or_default()));
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            console::remark(&format!("{error:?}"));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn execute(verb: Verb) -> Result<()> {
+    match verb {
         Verb::Demo(verb) => verb.execute(),
         Verb::World(verb) => verb.execute(),
         Verb::Explore(verb) => verb.execute(),
@@ -105,13 +129,6 @@ pub(crate) fn main() -> ExitCode {
         Verb::Optimise(verb) => verb.execute(),
         Verb::Validate(verb) => verb.execute(),
         Verb::Scale(verb) => verb.execute(),
-    };
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            console::remark(&format!("{error:?}"));
-            ExitCode::FAILURE
-        }
     }
 }
 

@@ -76,6 +76,9 @@ pub struct HostFacts {
     pub architecture: String,
     /// Processor model, when the system names it.
     pub processor: Option<String>,
+    /// Instructions that the localiser used.
+    #[serde(default)]
+    pub instructions: Option<String>,
     /// Threads the machine runs at once.
     pub available_threads: usize,
     /// Threads the run used; of a resumed run those it began with.
@@ -165,6 +168,7 @@ impl HostFacts {
             os: std::env::consts::OS.to_owned(),
             architecture: std::env::consts::ARCH.to_owned(),
             processor: model.map(|(_, model)| model.trim().to_owned()),
+            instructions: Some(edgeloc::matching::body_name().to_owned()),
             available_threads: std::thread::available_parallelism().map_or(1, usize::from),
             used_threads,
         }

@@ -331,6 +331,7 @@ fn facts(results: &RunResults, has_world: bool, coverages: &[SightCoverage]) -> 
                 dt { "seed" } dd { (manifest.seed) }
                 dt { "wall time" } dd { (format!("{:.1} s: {:.1} s to prepare, {:.1} s for learning and trials", timings.total_s(), timings.prepare_s, timings.trials_s)) }
                 dt { "machine" } dd { (host.processor.as_deref().unwrap_or("unnamed processor")) ", " (host.architecture) ", " (host.os) }
+                @if let Some(instructions) = &host.instructions { dt { "instructions" } dd { (instructions) } }
                 dt { "threads" } dd { (host.used_threads) " of " (host.available_threads) }
                 dt { "finished" } dd { (manifest.finished_utc.as_deref().unwrap_or("not yet")) }
             }

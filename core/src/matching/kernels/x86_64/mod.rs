@@ -34,7 +34,7 @@ pub(crate) fn run<W: Work>(work: W) -> W::Output {
 }
 
 /// Does without bodies above `name` from now on, in the whole process; returns the name of the body that is left. For
-/// benchmarks: all bodies give the same bits.
+/// benchmarks and checks: all bodies give the same bits.
 pub fn limit_body(name: &str) -> &'static str {
     detection::limit(name == Avx512::NAME, name == Avx512::NAME || name == Avx2::NAME);
     super::body_name()
