@@ -3,7 +3,7 @@
 use super::Evidence;
 use super::cameras::{BATCH, Cameras};
 use super::channel::channel_in_lane;
-use super::distance_planes::DistancePlanes;
+use super::distance_planes::{DistancePlanes, PIXEL_PX};
 use super::frustum::Frustum;
 use super::image_frame::ImageFrame;
 use super::kept_looks::{KeptLooks, LookPose};
@@ -22,6 +22,8 @@ use crate::math;
 pub(super) const VIEW_CAPACITY: usize = 384;
 /// Tolerance of the prediction apart from the pose \[px\]: lateral shift and the width of edges.
 const FIXED_TOLERANCE_PX: f32 = 6.0;
+/// Pixels of a plane to one of the normal image.
+const PLANE_PER_PX: f32 = 1.0 / PIXEL_PX;
 /// Error of the model itself \[m\].
 const MODEL_ERROR_M: f32 = 0.012;
 /// Weights of the four response widths: what is predicted loosely counts less.
@@ -232,13 +234,13 @@ impl<'m> Checker<'m> {
             width[lane] = tolerance.width(image.inverse_depth[lane]);
             channel[lane] = channel_in_lane(image.way[0][lane], image.way[1][lane]);
         }
-        let share = 0.25 * POINT_SHARES[count];
+        let share = PLANE_PER_PX * POINT_SHARES[count];
         let mut first = [[0.0; N]; 2];
         let mut step = [[0.0; N]; 2];
         for axis in 0..2 {
             for lane in 0..N {
                 step[axis][lane] = image.way[axis][lane] * share;
-                first[axis][lane] = image.start[axis][lane] * 0.25 + 0.5 * step[axis][lane];
+                first[axis][lane] = image.start[axis][lane] * PLANE_PER_PX + 0.5 * step[axis][lane];
             }
         }
         let mut place = [0_u32; N];

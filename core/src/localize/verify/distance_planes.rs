@@ -4,7 +4,9 @@ use super::SeenSegment;
 use super::chamfer::spread;
 use super::channel::{CHANNELS, channel_of, neighbor_of};
 
-/// Pixels of a plane in a row; each is 4 x 4 px of the normal image.
+/// Side of a plane's pixel in the normal image \[px\].
+pub(super) const PIXEL_PX: f32 = 4.0;
+/// Pixels of a plane in a row.
 pub(super) const COLUMNS: usize = 160;
 /// Rows of a plane.
 pub(super) const ROWS: usize = 120;

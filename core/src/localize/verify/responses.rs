@@ -1,7 +1,7 @@
 //! How well a distance agrees with a prediction, given how exact the prediction can be.
 
 use super::channel::CHANNELS;
-use super::distance_planes::{COLUMNS, DistancePlanes, PLANE, UNITS_PER_PIXEL};
+use super::distance_planes::{COLUMNS, DistancePlanes, PIXEL_PX, PLANE, UNITS_PER_PIXEL};
 use crate::math;
 
 /// Number of widths of the response, standard deviations of 7, 14, 28 and 56 px of the normal image.
@@ -12,8 +12,6 @@ const LEAST_WIDTH_PX: f32 = 7.0;
 const STEPS_PER_UNIT: u32 = 4;
 /// The step that nothing responds to: the table's last.
 const OUT_OF_REACH: u32 = 127;
-/// Side of a pixel of the planes \[px\].
-const PLANE_PIXEL_PX: f32 = 4.0;
 
 /// A byte for each step, in fours.
 pub(super) type ResponseTable = [[u8; 4]; 32];
@@ -38,7 +36,7 @@ impl Responses {
     pub(super) fn new() -> Self {
         let mut table = ResponseTable::default();
         for (step, response) in table.as_flattened_mut().iter_mut().enumerate().take(OUT_OF_REACH as usize) {
-            let px_per_step = PLANE_PIXEL_PX / (UNITS_PER_PIXEL as f32 * STEPS_PER_UNIT as f32);
+            let px_per_step = PIXEL_PX / (UNITS_PER_PIXEL as f32 * STEPS_PER_UNIT as f32);
             let distances = step as f32 * px_per_step / LEAST_WIDTH_PX;
             *response = math::round(255.0 * math::exp(-0.5 * distances * distances)) as u8;
         }
