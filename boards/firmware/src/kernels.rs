@@ -1,12 +1,12 @@
 //! The kernels on drawn inputs: one line of text for each kind of input, the same on every machine.
 //!
-//! Coefficients are held against a twin in plain arithmetic as they are made, so a machine tells by itself where its
+//! Coefficients, the best of several panels too, are held against a twin in plain arithmetic as they are made, so a machine tells by itself where its
 //! kernels err; the digest of a line says that it drew and got what the host did.
 
 use core::fmt::Write;
 
 use edgeloc::geometry::{Point2, Polarity, Segment2};
-use edgeloc::matching::{BinPair, LANES, PanelRow, RootRows, best_coefficient};
+use edgeloc::matching::{BinPair, LANES, Panel, PanelRow, RootRows, best_coefficient, best_coefficients};
 use edgeloc::pgh::{DistanceKind, HistogramBuilder, Line, LineBlock, PghShape};
 
 use crate::draw::{Digest, Draw};
@@ -119,7 +119,7 @@ fn twin(row: &[BinPair], panel: &[PanelRow]) -> i32 {
     (0..LANES).map(sum).fold(0, i32::max)
 }
 
-/// Scenes of no line to some; every second line is drawn about the middle, where sums are fullest.
+/// Scenes of no line to some, each met with itself as a view; every second line is drawn about the middle, where sums are fullest.
 fn histograms(name: &str, shape: &PghShape) -> Text {
     let mut draw = Draw::new(u64::from(shape.distance_bins) << 32 | u64::from(shape.angle_bins));
     let mut digest = Digest::new();
@@ -128,6 +128,8 @@ fn histograms(name: &str, shape: &PghShape) -> Text {
     let mut pairs = [BinPair { index: 0, roots: [0; 2] }; RootRows::pairs_len(LINES, BINS)];
     let mut ends = [0; LINES];
     let mut lines = [None; LINES];
+    let mut panel_rows = [PanelRow { roots: [[0; 2]; LANES] }; Panel::rows_len(BINS)];
+    let panel_rows = &mut panel_rows[..Panel::rows_len(shape.bin_count())];
     let mut filled = 0;
     for count in [0, 1, 2, 15, 16, 17, LINES] {
         let mut line = 0;
@@ -144,10 +146,12 @@ fn histograms(name: &str, shape: &PghShape) -> Text {
         }
         let lines: heapless::Vec<Line, LINES> = lines[..count].iter().copied().flatten().collect();
         let mut rows = RootRows::new(&mut pairs, &mut ends);
-        let built = HistogramBuilder::new(shape, &mut masses, &mut blocks)
-            .map(|mut builder| rows.rebuild(&mut builder, &lines));
-        if !matches!(built, Ok(Ok(()))) {
-            return text(format_args!("histograms, {name}: {built:?}"));
+        let mut builder = match HistogramBuilder::new(shape, &mut masses, &mut blocks) {
+            Ok(builder) => builder,
+            Err(error) => return text(format_args!("histograms, {name}: {error:?}")),
+        };
+        if let Err(error) = rows.rebuild(&mut builder, &lines) {
+            return text(format_args!("histograms, {name}: {error:?}"));
         }
         for row in rows.rows() {
             digest.add(row.len() as u64);
@@ -156,6 +160,19 @@ fn histograms(name: &str, shape: &PghShape) -> Text {
                 digest.add(u64::from(*index) << 32 | u64::from(*even as u16) << 16 | u64::from(*odd as u16));
             }
         }
+        let (mut best, mut expected) = ([0; LINES], [0; LINES]);
+        for first in (0..count).step_by(LANES) {
+            let mut panel = Panel::new(panel_rows);
+            panel.rebuild(&mut builder, &lines, first);
+            best_coefficients(&rows, core::slice::from_ref(&panel), &mut best);
+            for (row, expected) in rows.rows().zip(&mut expected) {
+                *expected = twin(row, panel_rows).max(*expected);
+            }
+        }
+        if best != expected {
+            return text(format_args!("histograms, {name}: best coefficients of {count} lines are not their twins"));
+        }
+        best.iter().for_each(|best| digest.add(u64::from(best.unsigned_abs())));
     }
     text(format_args!("histograms, {name}: {filled} pairs of bins, {:016x}", digest.0))
 }

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::database::{NodeId, TopologicalDatabase};
 use crate::geometry::{Heading, Segment2};
-use crate::matching::{Panel, PanelRow, RootRows, SKIPS_EMPTY_BINS, ViewScore, score_view};
+use crate::matching::{PRUNES, Panel, PanelRow, RootRows, ViewScore, score_view};
 use crate::pgh::{HistogramBuilder, Line, LineBlock, LongestLines};
 
 /// Scores nodes by pairwise geometric histograms, look by look.
@@ -156,7 +156,7 @@ impl SceneMatcher<'_> {
         let Some((node, mut builder)) = database.node(id).zip(builder) else { return ViewScore::default() };
         let prediction = predict_view(&node, database.rig(), heading);
         let view_lines = keep_longest(prediction, filter, config, self.view_lines);
-        if SKIPS_EMPTY_BINS {
+        if PRUNES {
             view_lines.sort_unstable_by_key(Line::kin);
         }
         let mut panel = Panel::new(self.panel_rows);

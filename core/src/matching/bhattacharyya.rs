@@ -190,7 +190,8 @@ impl Work for Coefficient<'_> {
 /// Raises `best`, a number for each of `rows`, to the row's best coefficient in Q30 with a line of the `panels`; lanes left
 /// empty give 0.
 ///
-/// With vectors several panels together are faster than one after another.
+/// With vectors several panels together are faster than one after another; with the DSP extension of Cortex-M lines that
+/// can't raise the best are left out. Of what are not histograms of one shape machines make different numbers.
 pub fn best_coefficients(rows: &RootRows<'_>, panels: &[Panel<'_>], best: &mut [i32]) {
     kernels::run(Meet { rows, panels, best });
 }

@@ -18,6 +18,6 @@ pub use bhattacharyya::{BinPair, Panel, PanelRow, RootRows, best_coefficient, be
 #[cfg(edgeloc_body = "x86_64")]
 #[doc(hidden)]
 pub use kernels::limit_body;
-pub(crate) use kernels::{Body, SKIPS_EMPTY_BINS, Work, lower_by_step, run};
+pub(crate) use kernels::{Body, PRUNES, Work, lower_by_step, run};
 pub use kernels::{LANES, body_name};
 pub use view_score::{ViewScore, score_view};

@@ -47,7 +47,7 @@ struct Arguments {
     /// Log to standard error what is done (-v) and in detail (-vv).
     #[arg(short, long, global = true, action = clap::ArgAction::Count)]
     verbose: u8,
-    /// Use no wider vector instructions than these: the results are the same bits, later.
+    /// On x86-64, use no wider vector instructions than these: the same results bit for bit, only slower.
     #[arg(long, global = true, value_name = "SET")]
     vectors: Option<Vectors>,
 }

@@ -3,6 +3,7 @@
 use super::console;
 use comfy_table::{CellAlignment, Table};
 use edgeloc_sim::report::{AnswerFigures, RunResults, Share, replay_command, worst_trials};
+use edgeloc_sim::scenario::first_alike;
 
 /// Maps told of in a few lines; a study of many is read from its summary.
 const LISTED_MAPS: usize = 3;
@@ -105,13 +106,13 @@ pub(super) fn position_errors(answers: &AnswerFigures) -> String {
 /// Map, time and what is slow, in a few lines.
 pub(super) fn remarks(results: &RunResults) -> String {
     let (summary, timings) = (&results.summary, &results.timings);
-    let looks = results.records.iter().map(|record| f64::from(record.looks)).sum::<f64>();
-    let mean_s_per_look = timings
-        .rows
-        .iter()
-        .zip(&summary.rows)
-        .map(|(timings, row)| timings.mean_s_per_look * row.mean_looks * row.trials as f64 / looks.max(1.0));
-    let localizer_s = looks * mean_s_per_look.sum::<f64>() / results.manifest.host.used_threads.max(1) as f64;
+    // Rows that are alike were run once.
+    let first_alike = results.scenario.settings().map(|settings| first_alike(&settings)).unwrap_or_default();
+    let was_run = |row: usize| first_alike.get(row).is_none_or(|&first| first == row);
+    let rows = timings.rows.iter().zip(&summary.rows).enumerate().filter(|(row, _)| was_run(*row));
+    let localizer_s =
+        rows.map(|(_, (timings, row))| timings.mean_s_per_look * row.mean_looks * row.trials as f64).sum::<f64>()
+            / results.manifest.host.used_threads.max(1) as f64;
     let mut maps = String::new();
     for (index, row) in summary.rows.iter().enumerate() {
         if summary.rows[..index].iter().all(|other| other.map != row.map) && maps.lines().count() < LISTED_MAPS {

@@ -2,8 +2,8 @@
 //!
 //! Rows are settings on common random numbers, so what several of them need is worked out once: a site for each way of
 //! learning, a map for each site, sources and draw of noise, a pose for each kind of start, what is visible from it, the
-//! clean images, the scene through each set of sources, and of rows that differ in name alone the whole trial. A row gives
-//! the same records as it does alone.
+//! clean images, the scene through each set of sources, and of rows that differ in name alone the whole trial, times
+//! and all. A row gives the same records as it does alone.
 //!
 //! Trials go map by map, so that never more than a few maps of each kind are in memory.
 
@@ -126,7 +126,6 @@ fn run_block(sites: &Sites, part: &Part<'_>, map: u32, on_trial: &(dyn Fn(TimedT
         rows.iter().for_each(|&row| maps[row] = Some(opened));
     }
 
-    let parameters: Vec<_> = settings.iter().map(Setting::parameters).collect();
     let run_rows = |memory: &mut Vec<u64>, (trial, rows): &(u32, Vec<usize>)| {
         let Some(&any) = rows.first() else { return };
         let (site, Setting { row, scenario }) = (sites.of_row(any), &settings[any]);
@@ -134,7 +133,7 @@ fn run_block(sites: &Sites, part: &Part<'_>, map: u32, on_trial: &(dyn Fn(TimedT
         let mut looks = Looks::new(site, scenario.seed, *trial, map);
         let mut ended: Vec<TimedTrial> = Vec::new();
         for &row in rows {
-            let timed = if let Some(twin) = ended.iter().find(|other| parameters[other.row] == parameters[row]) {
+            let timed = if let Some(twin) = ended.iter().find(|other| sites.are_alike(other.row, row)) {
                 let record = TrialRecord { row: settings[row].row.name.clone(), ..twin.record.clone() };
                 TimedTrial { row, record, look_times: twin.look_times.clone() }
             } else {
@@ -146,7 +145,9 @@ fn run_block(sites: &Sites, part: &Part<'_>, map: u32, on_trial: &(dyn Fn(TimedT
                 let record = trial.run(database, memory, &mut looks, |look| look_times.push(look.localizer_time));
                 TimedTrial { row, record, look_times }
             };
-            ended.push(timed.clone());
+            if rows.iter().any(|&other| other > row && sites.are_alike(other, row)) {
+                ended.push(timed.clone());
+            }
             on_trial(timed);
         }
     };

@@ -1,7 +1,7 @@
 //! The sites of a run: one for each way of learning among its rows, all in one building.
 
 use super::{Site, SiteError};
-use crate::scenario::{IllegalValue, Scenario, Setting, Start};
+use crate::scenario::{IllegalValue, Scenario, Setting, Start, first_alike};
 use crate::world::WireframeWorld;
 
 /// The rows of a scenario, each with the site it takes place in.
@@ -10,6 +10,7 @@ pub struct Sites {
     settings: Vec<Setting>,
     sites: Vec<Site>,
     site_of_row: Vec<usize>,
+    first_alike: Vec<usize>,
     trials_per_map: u32,
 }
 
@@ -30,7 +31,8 @@ impl Sites {
         for (setting, &site) in settings.iter().zip(&site_of_row) {
             sites[site].check_start(setting.row.start)?;
         }
-        Ok(Self { settings, sites, site_of_row, trials_per_map: scenario.trials_per_map })
+        let first_alike = first_alike(&settings);
+        Ok(Self { settings, sites, site_of_row, first_alike, trials_per_map: scenario.trials_per_map })
     }
 
     /// The rows, in the scenario's order.
@@ -62,6 +64,11 @@ impl Sites {
 
     pub(super) const fn trials_per_map(&self) -> u32 {
         self.trials_per_map
+    }
+
+    /// Whether two rows differ in name alone, or in how many trials they have.
+    pub(super) fn are_alike(&self, a: usize, b: usize) -> bool {
+        self.first_alike[a] == self.first_alike[b]
     }
 
     /// Whether two rows learn the same map with each draw of noise.

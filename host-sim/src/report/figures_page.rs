@@ -191,7 +191,7 @@ fn facts(results: &RunResults) -> Markup {
             dt { "program" } dd { "edgeloc " (manifest.program_version) @if let Some(commit) = &manifest.git_commit { ", commit " code { (commit) } } }
             dt { "command" } dd { code { (manifest.command.join(" ")) } }
             dt { "wall time" } dd { (format!("{:.0} s", timings.total_s())) }
-            dt { "machine" } dd { (manifest.host.processor.as_deref().unwrap_or("unnamed processor")) ", " (manifest.host.used_threads) @if manifest.host.used_threads == 1 { " thread" } @else { " threads" } }
+            dt { "machine" } dd { (manifest.host.processor.as_deref().unwrap_or("unnamed processor")) ", " @if let Some(instructions) = &manifest.host.instructions { (instructions) ", " } (manifest.host.used_threads) @if manifest.host.used_threads == 1 { " thread" } @else { " threads" } }
             dt { "noise draws" } dd { "the map is learned anew every " (scenario.trials_per_map) " trials" }
         }
         details { summary { "scenario.toml" } pre { (scenario.to_toml()) } }

@@ -76,7 +76,7 @@ pub struct HostFacts {
     pub architecture: String,
     /// Processor model, when the system names it.
     pub processor: Option<String>,
-    /// Instructions that the localiser used.
+    /// Instructions that the localiser used; of a resumed run those it began with.
     #[serde(default)]
     pub instructions: Option<String>,
     /// Threads the machine runs at once.

@@ -148,7 +148,7 @@ fn provenance(runs: &[(String, RunResults)], folder: &str) -> Markup {
             dl {
                 dt { "program" } dd { "edgeloc " (first.manifest.program_version) @if let Some(commit) = &first.manifest.git_commit { ", commit " (commit) } }
                 dt { "command" } dd { code { (first.manifest.command.join(" ")) } }
-                dt { "machine" } dd { (first.manifest.host.processor.as_deref().unwrap_or("unnamed processor")) ", " (first.manifest.host.used_threads) " threads" }
+                dt { "machine" } dd { (first.manifest.host.processor.as_deref().unwrap_or("unnamed processor")) ", " @if let Some(instructions) = &first.manifest.host.instructions { (instructions) ", " } (first.manifest.host.used_threads) " threads" }
                 dt { "seed" } dd { (first.manifest.seed) }
             }
             details { summary { "scenario.toml of the first world" } pre { (first.scenario.to_toml()) } }

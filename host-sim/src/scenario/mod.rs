@@ -18,7 +18,7 @@ pub use error::{IllegalValue, ScenarioError};
 pub use localizer::{LocalizerKind, LocalizerSettings, PghSettings, VerificationSettings};
 pub use preset::{PRESETS, Preset};
 pub use rig::RigSettings;
-pub use row::{Row, Setting, Start};
+pub use row::{Row, Setting, Start, first_alike};
 pub use world_choice::{Building, VisibilityChoice, WorldChoice};
 
 use crate::learning::NodePlacement;

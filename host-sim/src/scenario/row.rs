@@ -116,6 +116,15 @@ impl Setting {
     }
 }
 
+/// For each setting the first that has its [parameters](Setting::parameters): in one run both give the same trials. (A source
+/// that is off and one of no magnitude do alike.)
+#[must_use]
+pub fn first_alike(settings: &[Setting]) -> Vec<usize> {
+    let parameters: Vec<_> = settings.iter().map(Setting::parameters).collect();
+    let first = |of: &_| parameters.iter().position(|other| other == of).unwrap_or_default();
+    parameters.iter().map(first).collect()
+}
+
 impl Scenario {
     /// Every row as the whole scenario that it stands for, in order and checked.
     ///

@@ -3,13 +3,10 @@
 
 #![allow(unsafe_code, reason = "an instruction without an intrinsic, at one of the addresses where unsafe may live")]
 
-use super::envelope::{Envelopes, RootWords};
-use super::{Body, LANES};
+use super::Body;
+use super::envelope::{Envelopes, HALF, RootWords};
 use crate::matching::{BinPair, PanelRow};
 use core::arch::asm;
-
-/// Lines whose sums stay in registers.
-const HALF: usize = LANES / 2;
 
 /// The body for processors with the DSP extension; one exists only in code for them.
 #[derive(Debug, Clone, Copy)]
@@ -20,7 +17,7 @@ impl Body for Smlad {
 
     #[inline(always)]
     fn best_coefficient(self, row: &[BinPair], panel: &[PanelRow]) -> i32 {
-        if row.is_empty() { 0 } else { best_of_half::<0>(row, panel).max(best_of_half::<HALF>(row, panel)) }
+        best_of_half::<0>(row, panel).max(best_of_half::<HALF>(row, panel))
     }
 
     fn raise_best<'a>(self, rows: impl Iterator<Item = &'a [BinPair]>, panel: &[PanelRow], best: &mut [i32]) {
@@ -56,13 +53,16 @@ impl RootWords for Smlad {
     }
 }
 
-/// The best of the lines from `FIRST` on, or 0, for a row that is not empty.
-#[inline]
+/// The best of the lines from `FIRST` on, or 0.
+#[inline(never)]
 fn best_of_half<const FIRST: usize>(row: &[BinPair], panel: &[PanelRow]) -> i32 {
     const {
         assert!(HALF == 8 && (FIRST == 0 || FIRST == HALF), "eight sums, of one half or the other");
         assert!(size_of::<BinPair>() == 6 && core::mem::offset_of!(BinPair, roots) == 2);
         assert!(size_of::<PanelRow>() == 64 && align_of::<PanelRow>() >= 4);
+    }
+    if row.is_empty() {
+        return 0;
     }
     let pairs = row.as_ptr_range();
     let mut sums = [0_i32; HALF];

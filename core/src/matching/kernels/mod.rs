@@ -25,9 +25,9 @@ use super::{BinPair, PanelRow};
 /// View lines in a panel: one vector of coefficients.
 pub const LANES: usize = 16;
 
-/// Whether the work grows with the pairs of bins that any line of a panel fills, so that lines whose histograms are alike
-/// should lie in one.
-pub(crate) const SKIPS_EMPTY_BINS: bool = cfg!(edgeloc_body = "smlad");
+/// Whether lines whose histograms are alike should lie in one panel: pairs of bins that none of them fills are left out then,
+/// and lines that can't raise a row's best.
+pub(crate) const PRUNES: bool = cfg!(edgeloc_body = "smlad");
 
 /// A way to compute coefficients and to look bytes up.
 pub(crate) trait Body: Copy {
