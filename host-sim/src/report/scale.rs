@@ -163,12 +163,13 @@ pub fn scale_csv(lines: &[ScaleLine]) -> Result<String, csv::Error> {
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// Rates above, times of a look below, over the number of nodes on a logarithmic axis.
+/// Rates, times of a look and memory, one above the other, over the number of nodes on a logarithmic axis.
 #[must_use]
 pub fn scale_chart(lines: &[ScaleLine]) -> SVG {
     let rates = Axes { left: 62.0, top: 30.0, width: 560.0, height: 210.0 };
     let times = Axes { left: 62.0, top: 300.0, width: 560.0, height: 130.0 };
-    let decade = |nodes: u64| libm::log10(nodes.max(1) as f64);
+    let sizes = Axes { left: 62.0, top: 490.0, width: 560.0, height: 110.0 };
+    let decade = |count: u64| libm::log10(count.max(1) as f64);
     let least = libm::floor(lines.iter().map(|line| decade(line.nodes)).fold(2.0, f64::min));
     let most = libm::ceil(lines.iter().map(|line| decade(line.nodes)).fold(least + 1.0, f64::max) - 0.01);
     let x = |nodes: u64| rates.x((decade(nodes) - least) / (most - least));
@@ -183,17 +184,27 @@ pub fn scale_chart(lines: &[ScaleLine]) -> SVG {
     let steps = round_steps(slowest);
     let top_ms = steps.last().copied().unwrap_or(1.0);
 
-    let mut chart = drawing(700.0, 490.0)
+    // Memory in powers of ten, from below the least to above the greatest.
+    let bytes = || lines.iter().flat_map(|line| [line.map_bytes, line.memory_bytes]).map(decade);
+    let least_bytes = libm::floor(bytes().fold(6.0, f64::min));
+    let most_bytes = libm::ceil(bytes().fold(least_bytes + 1.0, f64::max));
+    let size_height = move |bytes: f64| (libm::log10(bytes) - least_bytes) / (most_bytes - least_bytes);
+    let powers: Vec<f64> =
+        (least_bytes as i32..=most_bytes as i32).map(|power| libm::exp10(f64::from(power))).collect();
+    let in_words = |bytes: f64| if bytes < 1e9 { format!("{} MB", bytes / 1e6) } else { format!("{} GB", bytes / 1e9) };
+
+    let mut chart = drawing(700.0, 660.0)
         .add(rates.grid(&rate_steps(floor), |rate| format!("{:.0} %", 100.0 * rate), height))
-        .add(times.grid(&steps, |ms| format!("{ms} ms"), |ms| ms / top_ms));
-    for axes in [&rates, &times] {
+        .add(times.grid(&steps, |ms| format!("{ms} ms"), |ms| ms / top_ms))
+        .add(sizes.grid(&powers, in_words, size_height));
+    for axes in [&rates, &times, &sizes] {
         chart.append(line("axis", (axes.x(0.0), axes.y(0.0)), (axes.x(1.0), axes.y(0.0))));
     }
     for power in (least as i32)..=(most as i32) {
-        let at = times.x((f64::from(power) - least) / (most - least));
-        chart.append(text("middle", (at, times.y(0.0) + 20.0), grouped(10_u64.pow(power.unsigned_abs()))));
+        let at = sizes.x((f64::from(power) - least) / (most - least));
+        chart.append(text("middle", (at, sizes.y(0.0) + 20.0), grouped(10_u64.pow(power.unsigned_abs()))));
     }
-    chart.append(text("middle", (times.x(0.5), times.y(0.0) + 44.0), "nodes of the map"));
+    chart.append(text("middle", (sizes.x(0.5), sizes.y(0.0) + 44.0), "nodes of the map"));
     let rate_series: [Series<SuccessRate>; 3] = [
         ("success", ScaleLine::success),
         ("truth on the shortlist at the last look", |line| line.shortlisted()[1]),
@@ -225,6 +236,15 @@ pub fn scale_chart(lines: &[ScaleLine]) -> SVG {
             (x(line.nodes), times.y(ms_of(line) / top_ms), None, words)
         });
         chart.append(trace(series + 3, name, (times.x(0.02 + 0.28 * series as f64), 288.0), marks.collect()));
+    }
+    let size_series: [Series<u64>; 2] =
+        [("map", |line| line.map_bytes), ("working memory of the localiser", |line| line.memory_bytes)];
+    for (series, (name, bytes_of)) in size_series.into_iter().enumerate() {
+        let marks = lines.iter().map(|line| {
+            let words = format!("{name}, {} nodes: {:.2} MB", line.nodes, bytes_of(line) as f64 / 1e6);
+            (x(line.nodes), sizes.y(size_height(bytes_of(line).max(1) as f64)), None, words)
+        });
+        chart.append(trace(series, name, (sizes.x(0.02 + 0.28 * series as f64), 478.0), marks.collect()));
     }
     chart
 }
@@ -276,6 +296,8 @@ mod tests {
         let of = |nodes| {
             let facts = ScaleFacts {
                 nodes,
+                map_bytes: 12_000 * nodes,
+                memory_bytes: 250_000,
                 exact: [[true, true], [true, false], [false, true]]
                     .map(|[is_right, is_shortlisted]| ExactScan { is_right, is_shortlisted })
                     .to_vec(),
@@ -302,6 +324,7 @@ mod tests {
         assert!(csv.starts_with("nodes,scored_nodes,trials,successes") && csv.lines().count() == 5, "{csv}");
         let chart = scale_chart(&lines()).to_string();
         assert!(chart.contains("success, 100008 nodes: 75.0 %") && chart.contains("100,000"), "{chart}");
+        assert!(chart.contains("map, 100008 nodes: 1200.10 MB") && chart.contains("100 MB"), "{chart}");
         assert!(!chart.contains("NaN") && !scale_chart(&[]).to_string().contains("NaN"));
     }
 }
