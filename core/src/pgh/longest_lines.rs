@@ -71,26 +71,33 @@ mod tests {
     use super::*;
     use crate::geometry::{Point2, Polarity, Segment2};
     use crate::pgh::PghShape;
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+    use std::vec::Vec;
 
     fn line(length_px: f32, order: u32) -> Line {
         let segment = Segment2::new(Point2::new(0.0, 0.0), Point2::new(0.0, length_px), Polarity::LeftBrighter);
         Line::new(&segment.expect("valid"), order, &PghShape::paper())
     }
 
-    #[test]
-    fn the_longest_are_kept_and_ties_go_to_the_first() {
-        let lengths = [20.0, 50.0, 30.0, 50.0, 10.0, 50.0, 40.0, 20.0];
-        let mut storage = [line(1.0, 0); 4];
-        let mut longest = LongestLines::new(&mut storage);
-        for (order, length) in lengths.iter().enumerate() {
-            longest.offer(line(*length, order as u32));
+    proptest! {
+        #[test]
+        fn the_longest_are_kept_and_ties_go_to_the_first(
+            lengths in vec(prop_oneof![(1..6_u8).prop_map(f32::from), 1.0..90.0_f32], 0..40),
+            room in 1..20_usize,
+        ) {
+            let lines: Vec<Line> = (0..).zip(&lengths).map(|(order, length)| line(*length, order)).collect();
+            let mut storage = std::vec![line(1.0, 0); room];
+            let mut longest = LongestLines::new(&mut storage);
+            lines.iter().for_each(|line| longest.offer(*line));
+            let mut kept: Vec<u32> = longest.into_lines().iter().map(|line| line.order).collect();
+            kept.sort_unstable();
+            let mut expected = lines;
+            expected.sort_by_key(|line| core::cmp::Reverse(line.length_q4));
+            let mut expected: Vec<u32> = expected.iter().take(room).map(|line| line.order).collect();
+            expected.sort_unstable();
+            prop_assert_eq!(kept, expected);
         }
-        let mut kept = [0; 4];
-        for (slot, line) in kept.iter_mut().zip(longest.into_lines()) {
-            *slot = line.order;
-        }
-        kept.sort_unstable();
-        assert_eq!(kept, [1, 3, 5, 6]);
     }
 
     #[test]

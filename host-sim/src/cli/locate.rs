@@ -33,7 +33,7 @@ pub(super) struct Locate {
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0, requires = "at", allow_hyphen_values = true)]
     heading_deg: f32,
     /// Folder for the drawings [default: locate-<scenario>-<trial>]; drawings of the same name are overwritten.
-    #[arg(long, value_name = "FOLDER")]
+    #[arg(short, long, value_name = "FOLDER")]
     out: Option<PathBuf>,
     /// How to print.
     #[arg(long, value_enum, default_value_t)]

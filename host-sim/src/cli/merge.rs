@@ -26,7 +26,7 @@ pub(super) struct Merge {
     #[arg(required = true, value_name = "FOLDER")]
     shards: Vec<PathBuf>,
     /// Folder that gets a folder of the whole run.
-    #[arg(long, value_name = "FOLDER", default_value = "runs")]
+    #[arg(short, long, value_name = "FOLDER", default_value = "runs")]
     out: PathBuf,
     /// How to print.
     #[arg(long, value_enum, default_value_t)]

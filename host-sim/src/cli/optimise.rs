@@ -89,7 +89,7 @@ pub(super) struct Optimise {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
     threads: Option<u16>,
     /// Folder that gets a folder of this search.
-    #[arg(long, value_name = "FOLDER", default_value = "runs")]
+    #[arg(short, long, value_name = "FOLDER", default_value = "runs")]
     out: PathBuf,
     /// How to print.
     #[arg(long, value_enum, default_value_t)]

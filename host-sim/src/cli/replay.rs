@@ -27,7 +27,7 @@ pub(super) struct Replay {
     row: Option<String>,
     /// Folder for the drawings [default: replay-<row>-<trial> in the run's folder]; drawings of the same name are
     /// overwritten.
-    #[arg(long, value_name = "FOLDER")]
+    #[arg(short, long, value_name = "FOLDER")]
     out: Option<PathBuf>,
     /// How to print.
     #[arg(long, value_enum, default_value_t)]

@@ -45,7 +45,7 @@ pub(super) struct Scale {
     #[arg(long, value_name = "N", default_value_t = 0)]
     exact: u32,
     /// Folder for maps and results.
-    #[arg(long, value_name = "FOLDER", default_value = "scale")]
+    #[arg(short, long, value_name = "FOLDER", default_value = "scale")]
     out: PathBuf,
     /// How to print.
     #[arg(long, value_enum, default_value_t)]

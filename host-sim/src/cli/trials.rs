@@ -23,7 +23,7 @@ pub(super) struct RunArguments {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=4096))]
     pub(super) threads: Option<u16>,
     /// Folder that gets a folder of this run.
-    #[arg(long, value_name = "FOLDER", default_value = "runs")]
+    #[arg(short, long, value_name = "FOLDER", default_value = "runs")]
     pub(super) out: PathBuf,
 }
 
