@@ -23,6 +23,10 @@ PACKAGES = ["numpy", "faiss-cpu", "simsimd", "numkong", "opencv-python-headless"
 THREADS = ["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NK_NUM_THREADS"]
 BODIES = ["SSE2", "AVX2", "AVX-512 VNNI"]
 
+# How many times faster than a library, by its fastest way to all that is asked, each body is meant to be.
+GOALS = [("NumPy", "SSE2", 2), ("NumPy", "AVX2", 5), ("NumPy", "AVX-512 VNNI", 6.5), ("FAISS", "AVX-512 VNNI", 15),
+         ("NumKong i8", "AVX-512 VNNI", 2), ("OpenCV", "AVX-512 VNNI", 280)]
+
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -235,10 +239,22 @@ def measure(arguments):
             peaks[level] = max(peaks.get(level, 0.0), ours.library.edgeloc_peak(level) / took)
         naively = min(naively, stopwatch(ours.library.edgeloc_describe_naively))
     report(everybody, ours, products, density, peaks, levels)
+    judge(everybody, levels)
     print(f"\nhistograms of the scene, {ours.scene_lines} lines, packed for matching; the naive twin {naively * 1e6:.0f} us")
     for level in levels:
         print(f"{BODIES[level]:<36} {describing[level] * 1e6:6.1f} us   {naively / describing[level]:5.1f} times the twin")
     kernels()
+
+
+def judge(everybody, levels):
+    """Goals and ratios."""
+    whole = [contestant for contestant in everybody if not contestant.name.endswith("alone")]
+    seconds = lambda beginning: min(other.whole_seconds() for other in whole if other.name.startswith(beginning))
+    own = {contestant.name: contestant.whole_seconds() for contestant in everybody if "edgeloc" in contestant.name}
+    print(f"\n{'faster than':<36} {'goal':>8} {'here':>8}")
+    for beginning, body, goal in GOALS:
+        if body in [BODIES[level] for level in levels]:
+            print(f"{beginning + ', ' + body:<36} {goal:8} {seconds(beginning) / own['edgeloc ' + body]:8.2f}")
 
 
 def report(everybody, ours, products, density, peaks, levels):
