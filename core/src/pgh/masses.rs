@@ -125,20 +125,14 @@ impl<'m> Masses<'m> {
     fn add(&mut self, frame: &Frame<'_>, block: &LineBlock, reach: &mut Reach) {
         let shares = frame.shares(block, reach);
         let stride = stride_of(self.angle_bins, BLOCK) as i32;
-        // Lines that reach into a second distance bin: one in three.
-        let mut wide = 0_u32;
         for i in 0..BLOCK {
-            add_pair(self.ends, shares.first[i], &shares.in_first[i]);
-            wide |= if shares.last[i] > shares.first[i] { 1 << i } else { 0 };
-        }
-        while wide != 0 {
-            let i = wide.trailing_zeros() as usize % BLOCK;
-            wide &= wide - 1;
             let (first, last) = (shares.first[i], shares.last[i]);
+            add_pair(self.ends, first, &shares.in_first[i]);
             add_pair(self.ends, last, &shares.in_last[i]);
-            // Where there is no bin between, the two cancel out.
-            add_pair(self.steps, first + stride, &shares.in_between[i]);
-            add_pair(self.steps, last, &shares.in_between[i].map(i32::wrapping_neg));
+            if last - first > stride {
+                add_pair(self.steps, first + stride, &shares.in_between[i]);
+                add_pair(self.steps, last, &shares.in_between[i].map(i32::wrapping_neg));
+            }
         }
     }
 
