@@ -1,7 +1,7 @@
 //! The kernels on drawn inputs: one line of text for each kind of input, the same on every machine.
 //!
-//! Coefficients, the best of several panels too, are held against a twin in plain arithmetic as they are made, so a machine tells by itself where its
-//! kernels err; the digest of a line says that it drew and got what the host did.
+//! Coefficients, the best of several panels too, are held against a twin in plain arithmetic as they are made, so a machine
+//! tells by itself where its kernels err; the digest of a line says that it drew and got what the host did.
 
 use core::fmt::Write;
 
@@ -119,7 +119,8 @@ fn twin(row: &[BinPair], panel: &[PanelRow]) -> i32 {
     (0..LANES).map(sum).fold(0, i32::max)
 }
 
-/// Scenes of no line to some, each met with itself as a view; every second line is drawn about the middle, where sums are fullest.
+/// Scenes of no line to some, each met with itself as a view; every second line is drawn about the middle, where sums are
+/// fullest.
 fn histograms(name: &str, shape: &PghShape) -> Text {
     let mut draw = Draw::new(u64::from(shape.distance_bins) << 32 | u64::from(shape.angle_bins));
     let mut digest = Digest::new();
